@@ -1,0 +1,323 @@
+//! A leg: a number of steps that the workers run without coming back to the caller.
+
+use std::any::Any;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crate::clock::Clock;
+use crate::columns::{ColumnId, Columns, Role};
+use crate::domain::{Domain, Partition};
+use crate::stage::Fault;
+use crate::step::{Entry, Step};
+use crate::view::{Near, Own, Place, Rates, Slot, slots_of};
+
+/// What went wrong in a leg, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Number of the step.
+    pub step: u64,
+    /// Place of the part in the step.
+    pub part: usize,
+    /// Name of the stage.
+    pub stage: String,
+    /// Number of the sub-domain.
+    pub sub_domain: usize,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// Why a stage of a sub-domain ended a run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Cause {
+    /// The stage said so.
+    #[error("{0}")]
+    Fault(#[from] Fault),
+    /// The stage panicked.
+    #[error("the stage panicked: {0}")]
+    Panic(String),
+    /// A state column holds NaN or infinity.
+    #[error("column {column:?} holds a value that is not finite")]
+    NotFinite {
+        /// Name of the column.
+        column: String,
+    },
+}
+
+/// Work cut into parts and sub-domains: all that a schedule knows.
+pub(crate) trait Work: Sync {
+    /// Number of parts of a step.
+    fn parts(&self) -> usize;
+    /// Ownership and neighbourhood.
+    fn partition(&self) -> &Partition;
+    /// Numbers of the steps to run.
+    fn steps(&self) -> Range<u64>;
+    /// Runs one part of one step of one sub-domain; never unwinds.
+    fn run(&self, worker: usize, step: u64, part: usize, sub_domain: usize);
+    /// Whether something failed, so that the rest need not be run.
+    fn failed(&self) -> bool;
+}
+
+/// Memory that legs reuse, so that a leg does not allocate.
+pub(crate) struct Desk {
+    scratch: Vec<Mutex<Vec<Box<dyn Any + Send>>>>,
+    slots: Vec<Slot>,
+    /// Per set of swapped pairs that occurs, the slots in that order.
+    tables: Vec<(u64, Vec<Slot>)>,
+    checked: Vec<ColumnId>,
+}
+
+impl Desk {
+    /// Memory for the legs of `step` on `workers` workers.
+    pub fn new<D: Domain>(step: &Step<D>, columns: &Columns, workers: usize) -> Self {
+        let scratch = (0..workers)
+            .map(|_| Mutex::new(step.stages.iter().map(|s| s.scratch()).collect()))
+            .collect();
+        let mut keys = Vec::new();
+        for parity in [0, step.swapped] {
+            let entries = (0..step.entries.len()).map(Some).chain([None]);
+            keys.extend(entries.map(|e| step.swapped_before(parity, e)));
+        }
+        keys.sort_unstable();
+        keys.dedup();
+        Self {
+            scratch,
+            slots: Vec::new(),
+            tables: keys.into_iter().map(|key| (key, Vec::new())).collect(),
+            checked: columns
+                .iter()
+                .filter(|(_, c)| c.role() == Role::State)
+                .map(|(id, _)| id)
+                .collect(),
+        }
+    }
+
+    fn lay_out<D: Domain>(&mut self, step: &Step<D>, columns: &mut Columns) {
+        slots_of(columns, &mut self.slots);
+        for (key, table) in &mut self.tables {
+            table.clone_from(&self.slots);
+            for (k, (a, b)) in step.pairs.iter().enumerate() {
+                if *key >> k & 1 == 1 {
+                    table.swap(a.0 as usize, b.0 as usize);
+                }
+            }
+        }
+    }
+}
+
+/// One leg, ready to be run by a schedule.
+pub(crate) struct Leg<'a, D: Domain> {
+    domain: &'a D,
+    partition: &'a Partition,
+    columns: &'a mut Columns,
+    step: &'a Step<D>,
+    desk: &'a Desk,
+    clock: &'a Clock,
+    steps: Range<u64>,
+    check_every: Option<u64>,
+    failed: AtomicBool,
+    failure: Mutex<Option<Failure>>,
+}
+
+impl<'a, D: Domain> Leg<'a, D> {
+    /// A leg of `steps` steps; state columns are checked to be finite after every step whose
+    /// number (from 1) divides by `check_every`.
+    ///
+    /// # Panics
+    /// If the partition is not sealed or has other points than the columns.
+    pub fn new(
+        domain: &'a D,
+        columns: &'a mut Columns,
+        step: &'a Step<D>,
+        desk: &'a mut Desk,
+        clock: &'a Clock,
+        steps: Range<u64>,
+        check_every: Option<u64>,
+    ) -> Self {
+        let partition = domain.partition();
+        assert!(partition.is_sealed(), "the domain's partition is not sealed");
+        assert_eq!(
+            partition.points(),
+            columns.points(),
+            "the domain and the columns have different numbers of points"
+        );
+        desk.lay_out(step, columns);
+        Self {
+            domain,
+            partition,
+            columns,
+            step,
+            desk,
+            clock,
+            steps,
+            check_every,
+            failed: AtomicBool::new(false),
+            failure: Mutex::new(None),
+        }
+    }
+
+    /// Ends the leg after the schedule has run it: the columns' memory is brought in the order
+    /// that the last step's swaps left.
+    ///
+    /// # Errors
+    /// The first failure, in order of step, part and sub-domain, among those that happened.
+    pub fn finish(self) -> Result<(), Failure> {
+        let Self {
+            columns,
+            step,
+            steps,
+            failure,
+            ..
+        } = self;
+        if (steps.end - steps.start) % 2 == 1 {
+            for (k, &(a, b)) in step.pairs.iter().enumerate() {
+                if step.swapped >> k & 1 == 1 {
+                    columns.exchange(a, b);
+                }
+            }
+        }
+        match failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            Some(failure) => Err(failure),
+            None => Ok(()),
+        }
+    }
+
+    fn place(&self, step: u64, entry: Option<usize>, id: usize) -> Place<'_, D> {
+        let odd = (step - self.steps.start) % 2 == 1;
+        let parity = if odd { self.step.swapped } else { 0 };
+        let key = self.step.swapped_before(parity, entry);
+        let tables = &self.desk.tables;
+        let table = tables
+            .iter()
+            .find(|(k, _)| *k == key)
+            .expect("all keys are laid out");
+        Place {
+            domain: self.domain,
+            partition: self.partition,
+            id,
+            slots: &table.1,
+        }
+    }
+
+    fn scratch(&self, worker: usize) -> MutexGuard<'_, Vec<Box<dyn Any + Send>>> {
+        // Every worker has its own: the lock is never contended. A poisoned scratch belongs to a
+        // stage that panicked; the run ends with that.
+        self.desk.scratch[worker]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn run_entry(
+        &self,
+        worker: usize,
+        step: u64,
+        entry: usize,
+        sub_domain: usize,
+    ) -> Result<(), Cause> {
+        let &Entry { stage, c, .. } = &self.step.entries[entry];
+        let moment = self.clock.moment(step, c);
+        let place = self.place(step, Some(entry), sub_domain);
+        let mut scratch = self.scratch(worker);
+        let scratch = scratch[stage].as_mut();
+        let stage = &self.step.stages[stage];
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            if stage.is_rate() {
+                let writes = stage.writes();
+                // SAFETY: the schedule runs this part of this sub-domain once, on this worker,
+                // and whatever runs beside it within sight is the same part (module `view`); the
+                // leg's exclusive borrow of the columns keeps their memory in place.
+                let (near, mut rates) =
+                    unsafe { (Near::new(place, writes), Rates::new(place, writes)) };
+                self.domain.check(&near)?;
+                stage.run_rate(&near, &mut rates, scratch, &moment)
+            } else {
+                // SAFETY: as above; in an update part everybody touches only what it owns.
+                let mut own = unsafe { Own::new(place) };
+                stage.run_update(&mut own, scratch, &moment)
+            }
+        }));
+        match outcome {
+            Ok(result) => result.map_err(Cause::Fault),
+            Err(panic) => Err(Cause::Panic(panic_message(panic.as_ref()))),
+        }
+    }
+
+    fn check_finite(&self, step: u64, sub_domain: usize) -> Result<(), Cause> {
+        // SAFETY: as an update part; the step's last part has just been run here.
+        let own = unsafe { Own::new(self.place(step, None, sub_domain)) };
+        match self.desk.checked.iter().find(|&&id| !own.is_finite(id)) {
+            Some(&id) => Err(Cause::NotFinite {
+                column: self.columns.column(id).name().to_owned(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn fail(&self, failure: Failure) {
+        let place = |f: &Failure| (f.step, f.part, f.sub_domain);
+        let mut first = self
+            .failure
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if first.as_ref().is_none_or(|f| place(&failure) < place(f)) {
+            *first = Some(failure);
+        }
+        self.failed.store(true, Ordering::Release);
+    }
+}
+
+impl<D: Domain> Work for Leg<'_, D> {
+    fn parts(&self) -> usize {
+        self.step.parts()
+    }
+
+    fn partition(&self) -> &Partition {
+        self.partition
+    }
+
+    fn steps(&self) -> Range<u64> {
+        self.steps.clone()
+    }
+
+    fn run(&self, worker: usize, step: u64, part: usize, sub_domain: usize) {
+        if self.failed() {
+            return;
+        }
+        let fail = |stage: &str, cause| {
+            self.fail(Failure {
+                step,
+                part,
+                stage: stage.to_owned(),
+                sub_domain,
+                cause,
+            });
+        };
+        for entry in self.step.part_start[part]..self.step.part_start[part + 1] {
+            if let Err(cause) = self.run_entry(worker, step, entry, sub_domain) {
+                let stage = self.step.entries[entry].stage;
+                return fail(self.step.stages[stage].name(), cause);
+            }
+        }
+        let is_checked = self.check_every.is_some_and(|n| (step + 1) % n == 0);
+        if is_checked
+            && part + 1 == self.parts()
+            && let Err(cause) = self.check_finite(step, sub_domain)
+        {
+            fail(&self.step.part_name(part), cause);
+        }
+    }
+
+    fn failed(&self) -> bool {
+        self.failed.load(Ordering::Acquire)
+    }
+}
+
+/// What a panic said.
+fn panic_message(panic: &(dyn Any + Send)) -> String {
+    panic
+        .downcast_ref::<&str>()
+        .map(|s| (*s).to_owned())
+        .or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "no message".to_owned())
+}

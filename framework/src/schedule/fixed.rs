@@ -1,0 +1,40 @@
+//! Equal shares of sub-domains, decided beforehand: predictive balance, to compare with.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::order::Order;
+use crate::dispatch::Meeting;
+use crate::leg::Work;
+use crate::team::Team;
+
+pub(super) struct Fixed {
+    meeting: Meeting,
+}
+
+impl Fixed {
+    pub fn new(workers: usize) -> Self {
+        Self {
+            meeting: Meeting::new(workers),
+        }
+    }
+
+    pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: Order) {
+        let (sub_domains, workers) = (work.partition().len(), team.workers());
+        let stop = AtomicBool::new(false);
+        let meeting = &self.meeting;
+        team.run(|worker| {
+            let share = sub_domains * worker / workers..sub_domains * (worker + 1) / workers;
+            for step in work.steps() {
+                for part in 0..work.parts() {
+                    for place in share.clone() {
+                        work.run(worker, step, part, order.at(place));
+                    }
+                    meeting.arrive(|| stop.store(work.failed(), Ordering::Relaxed));
+                    if stop.load(Ordering::Relaxed) {
+                        return;
+                    }
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,284 @@
+//! Structured grids: rows contiguous in x, tiles of rows as sub-domains.
+
+mod rows;
+
+pub use rows::{Rows, RowsMut};
+
+use crate::domain::{Domain, Partition, Piece, Span, SubDomain};
+
+/// A 1-D, 2-D or 3-D structured grid.
+///
+/// Point (i, j, k) is number `(k ny + j) nx + i`. A tile is a block of whole rows; its neighbours
+/// are the tiles that own a row within the stencil's reach, corners included.
+#[derive(Debug)]
+pub struct Grid {
+    shape: [usize; 3],
+    periodic: [bool; 3],
+    reach: usize,
+    origin: [f64; 3],
+    spacing: [f64; 3],
+    /// Rows (in y) and planes (in z) of a tile.
+    tile: [usize; 2],
+    /// Tiles in y and z.
+    tiles: [usize; 2],
+    partition: Partition,
+}
+
+/// Describes a [`Grid`].
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct GridBuilder {
+    shape: [usize; 3],
+    periodic: [bool; 3],
+    reach: usize,
+    origin: [f64; 3],
+    spacing: [f64; 3],
+    tile: Option<[usize; 2]>,
+}
+
+impl GridBuilder {
+    /// Which directions are periodic; none by default.
+    pub fn periodic<const D: usize>(mut self, periodic: [bool; D]) -> Self {
+        self.periodic[..D].copy_from_slice(&periodic);
+        self
+    }
+
+    /// How many rows or planes away a stencil reads; 1 by default.
+    pub fn reach(mut self, reach: usize) -> Self {
+        self.reach = reach;
+        self
+    }
+
+    /// Position of point (0, 0, 0); the origin by default.
+    pub fn origin<const D: usize>(mut self, origin: [f64; D]) -> Self {
+        self.origin[..D].copy_from_slice(&origin);
+        self
+    }
+
+    /// Distance of points in each direction; 1 by default.
+    pub fn spacing<const D: usize>(mut self, spacing: [f64; D]) -> Self {
+        self.spacing[..D].copy_from_slice(&spacing);
+        self
+    }
+
+    /// Rows (in y) and planes (in z) of a tile; by default chosen so that a tile has some
+    /// 8,192 points: a task of several microseconds, small against the second-level cache.
+    pub fn tile(mut self, rows: usize, planes: usize) -> Self {
+        self.tile = Some([rows, planes]);
+        self
+    }
+
+    /// The grid.
+    ///
+    /// # Panics
+    /// If a length of the grid or of a tile is 0.
+    pub fn build(self) -> Grid {
+        let [nx, ny, nz] = self.shape;
+        assert!(nx * ny * nz > 0, "a grid of shape {:?} has no points", self.shape);
+        let [rows, planes] = self.tile.unwrap_or_else(|| default_tile(self.shape));
+        assert!(rows * planes > 0, "a tile needs rows");
+        let tile = [rows.min(ny), planes.min(nz)];
+        let tiles = [ny.div_ceil(tile[0]), nz.div_ceil(tile[1])];
+        let mut grid = Grid {
+            shape: self.shape,
+            periodic: self.periodic,
+            reach: self.reach,
+            origin: self.origin,
+            spacing: self.spacing,
+            tile,
+            tiles,
+            partition: Partition::new(nx * ny * nz),
+        };
+        grid.divide();
+        grid
+    }
+}
+
+fn default_tile([nx, ny, nz]: [usize; 3]) -> [usize; 2] {
+    let rows = (8192 / nx).max(1);
+    if nz == 1 {
+        return [rows.min(ny), 1];
+    }
+    let side = (rows as f64).sqrt().round().max(1.0) as usize;
+    [side.min(ny), side.min(nz)]
+}
+
+impl Grid {
+    /// Begins a grid of `shape` points, 1 to 3 directions.
+    pub fn builder<const D: usize>(shape: [usize; D]) -> GridBuilder {
+        let mut full = [1; 3];
+        full[..D].copy_from_slice(&shape);
+        GridBuilder {
+            shape: full,
+            periodic: [false; 3],
+            reach: 1,
+            origin: [0.0; 3],
+            spacing: [1.0; 3],
+            tile: None,
+        }
+    }
+
+    /// Points in each direction, 1 in those that the grid does not have.
+    pub fn shape(&self) -> [usize; 3] {
+        self.shape
+    }
+
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Which directions are periodic.
+    pub fn periodic(&self) -> [bool; 3] {
+        self.periodic
+    }
+
+    /// Position of point (0, 0, 0).
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// Distance of points in each direction.
+    pub fn spacing(&self) -> [f64; 3] {
+        self.spacing
+    }
+
+    /// Position of point `number`.
+    pub fn position(&self, number: usize) -> [f64; 3] {
+        let [nx, ny, _] = self.shape;
+        let index = [number % nx, number / nx % ny, number / (nx * ny)];
+        std::array::from_fn(|a| self.origin[a] + index[a] as f64 * self.spacing[a])
+    }
+
+    fn divide(&mut self) {
+        let [ny, nz] = [self.shape[1], self.shape[2]];
+        let mut neighbours = Vec::new();
+        for tk in 0..self.tiles[1] {
+            for tj in 0..self.tiles[0] {
+                let [rows, planes] = self.extent(tj, tk);
+                neighbours.clear();
+                let near_rows = near(rows.clone(), self.reach, ny, self.periodic[1]);
+                for k in near(planes.clone(), self.reach, nz, self.periodic[2]) {
+                    for &j in &near_rows {
+                        neighbours.push(self.owner(j, k) as u32);
+                    }
+                }
+                let own = self.owner(rows.start, planes.start) as u32;
+                neighbours.sort_unstable();
+                neighbours.dedup();
+                neighbours.retain(|&n| n != own);
+                let nx = self.shape[0];
+                let spans = planes.map(|k| Span {
+                    start: (k * ny + rows.start) * nx,
+                    end: (k * ny + rows.end) * nx,
+                });
+                self.partition.push(spans, neighbours.iter().copied());
+            }
+        }
+        self.partition
+            .seal()
+            .expect("tiles cover the grid and see each other mutually");
+    }
+
+    /// Rows and planes of tile (tj, tk).
+    fn extent(&self, tj: usize, tk: usize) -> [std::ops::Range<usize>; 2] {
+        let cut = |t: usize, length: usize, n: usize| t * length..((t + 1) * length).min(n);
+        [
+            cut(tj, self.tile[0], self.shape[1]),
+            cut(tk, self.tile[1], self.shape[2]),
+        ]
+    }
+
+    /// The tile that owns row j of plane k.
+    fn owner(&self, j: usize, k: usize) -> usize {
+        k / self.tile[1] * self.tiles[0] + j / self.tile[0]
+    }
+}
+
+/// Indices within `reach` of `range`, wrapped or cut off at the ends of `0..n`.
+fn near(range: std::ops::Range<usize>, reach: usize, n: usize, periodic: bool) -> Vec<usize> {
+    let (first, end) = (range.start as isize - reach as isize, range.end + reach);
+    let mut all: Vec<usize> = (first..end as isize)
+        .filter(|&i| periodic || (0..n as isize).contains(&i))
+        .map(|i| i.rem_euclid(n as isize) as usize)
+        .collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+impl Domain for Grid {
+    type SubDomain<'a> = Tile<'a>;
+
+    fn partition(&self) -> &Partition {
+        &self.partition
+    }
+
+    fn sub_domain(&self, id: usize) -> Tile<'_> {
+        let [rows, planes] = self.extent(id % self.tiles[0], id / self.tiles[0]);
+        Tile {
+            grid: self,
+            id,
+            rows,
+            planes,
+        }
+    }
+}
+
+/// A block of whole rows of a [`Grid`].
+#[derive(Clone, Debug)]
+pub struct Tile<'a> {
+    grid: &'a Grid,
+    id: usize,
+    rows: std::ops::Range<usize>,
+    planes: std::ops::Range<usize>,
+}
+
+impl<'a> Tile<'a> {
+    /// Its rows as (j, k), in order of memory.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<'a> {
+        let rows = self.rows.clone();
+        self.planes
+            .clone()
+            .flat_map(move |k| rows.clone().map(move |j| (j, k)))
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &'a Grid {
+        self.grid
+    }
+}
+
+impl SubDomain for Tile<'_> {
+    fn piece(&self) -> Piece<'_> {
+        self.grid.partition.piece(self.id)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tile_sees_the_tiles_around_it() {
+        let grid = Grid::builder([4, 9, 9])
+            .periodic([true, true, false])
+            .tile(3, 3)
+            .build();
+        assert_eq!(grid.partition().neighbours(4), [0, 1, 2, 3, 5, 6, 7, 8]);
+        assert_eq!(grid.partition().neighbours(0), [1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn a_wide_stencil_sees_past_thin_tiles() {
+        let grid = Grid::builder([4, 9]).reach(3).tile(2, 1).build();
+        assert_eq!(grid.partition().neighbours(0), [1, 2]);
+        assert_eq!(grid.partition().neighbours(4), [2, 3]);
+    }
+
+    #[test]
+    fn one_tile_around_a_periodic_grid_is_not_its_own_neighbour() {
+        let grid = Grid::builder([4, 4]).periodic([true, true]).tile(4, 1).build();
+        assert!(grid.partition().neighbours(0).is_empty());
+    }
+}

@@ -1,0 +1,158 @@
+//! Rows of a grid's columns, as stages see them.
+
+use super::{Grid, Tile};
+use crate::columns::{Element, Rate, State};
+use crate::domain::Span;
+use crate::view::{Near, Own, Part, PartMut, Rates, View};
+
+/// Rows of one column, read only, as far as they can be seen from one tile.
+pub struct Rows<'a, T> {
+    near: Near<'a, Grid>,
+    column: View<'a, T>,
+}
+
+impl<'a, T> Rows<'a, T> {
+    /// Row j of plane k, all of x. Periodic directions wrap.
+    ///
+    /// # Panics
+    /// If there is no such row, or it lies beyond the stencil's reach.
+    #[inline]
+    pub fn row(&self, j: isize, k: isize) -> &'a [T] {
+        self.get(j, k)
+            .unwrap_or_else(|| panic!("row ({j}, {k}) lies outside the grid"))
+    }
+
+    /// As [`Rows::row`], but `None` past a bounded end.
+    ///
+    /// # Panics
+    /// If the row lies beyond the stencil's reach.
+    #[inline]
+    pub fn get(&self, j: isize, k: isize) -> Option<&'a [T]> {
+        let grid = self.near.domain();
+        let [nx, ny, nz] = grid.shape;
+        let j = wrap(j, ny, grid.periodic[1])?;
+        let k = wrap(k, nz, grid.periodic[2])?;
+        let start = (k * ny + j) * nx;
+        let span = Span {
+            start,
+            end: start + nx,
+        };
+        Some(self.column.at(self.near.reach(grid.owner(j, k), span)))
+    }
+}
+
+fn wrap(i: isize, n: usize, periodic: bool) -> Option<usize> {
+    if (0..n as isize).contains(&i) {
+        Some(i as usize)
+    } else {
+        periodic.then(|| i.rem_euclid(n as isize) as usize)
+    }
+}
+
+/// A tile's own rows of one column, to be written.
+pub struct RowsMut<'a, T> {
+    tile: Tile<'a>,
+    part: PartMut<'a, T>,
+}
+
+impl<T> RowsMut<'_, T> {
+    /// Row j of plane k, all of x.
+    ///
+    /// # Panics
+    /// If the tile does not own it.
+    #[inline]
+    pub fn row(&mut self, j: usize, k: usize) -> &mut [T] {
+        let (span, range) = place(&self.tile, j, k);
+        &mut self.part.span(span)[range]
+    }
+}
+
+/// A tile's own rows of one column, read only.
+pub struct OwnRows<'a, T> {
+    tile: Tile<'a>,
+    part: Part<'a, T>,
+}
+
+impl<'a, T> OwnRows<'a, T> {
+    /// Row j of plane k, all of x.
+    ///
+    /// # Panics
+    /// If the tile does not own it.
+    #[inline]
+    pub fn row(&self, j: usize, k: usize) -> &'a [T] {
+        let (span, range) = place(&self.tile, j, k);
+        &self.part.span(span)[range]
+    }
+}
+
+/// Which span of its tile a row lies in, and where.
+fn place(tile: &Tile<'_>, j: usize, k: usize) -> (usize, std::ops::Range<usize>) {
+    assert!(
+        tile.rows.contains(&j) && tile.planes.contains(&k),
+        "row ({j}, {k}) is not the tile's own"
+    );
+    let nx = tile.grid.shape[0];
+    let start = (j - tile.rows.start) * nx;
+    (k - tile.planes.start, start..start + nx)
+}
+
+impl<'a> Near<'a, Grid> {
+    /// Rows of a state column, as far as they can be seen from here.
+    ///
+    /// # Panics
+    /// As [`Near::state`].
+    pub fn rows<T: Element>(&self, column: State<T>) -> Rows<'a, T> {
+        Rows {
+            near: *self,
+            column: self.state(column),
+        }
+    }
+
+    /// Rows of a rate column that an earlier stage wrote.
+    ///
+    /// # Panics
+    /// As [`Near::rate`].
+    pub fn rate_rows<T: Element>(&self, column: Rate<T>) -> Rows<'a, T> {
+        Rows {
+            near: *self,
+            column: self.rate(column),
+        }
+    }
+}
+
+impl<'a> Rates<'a, Grid> {
+    /// The tile's own rows of a rate column.
+    ///
+    /// # Panics
+    /// As [`Rates::column`].
+    pub fn rows<T: Element>(&mut self, column: Rate<T>) -> RowsMut<'a, T> {
+        RowsMut {
+            tile: crate::Domain::sub_domain(self.domain(), self.id()),
+            part: self.column(column),
+        }
+    }
+}
+
+impl<'a> Own<'a, Grid> {
+    /// The tile's own rows of a state column, to be advanced.
+    ///
+    /// # Panics
+    /// As [`Own::state_mut`].
+    pub fn rows_mut<T: Element>(&mut self, column: State<T>) -> RowsMut<'a, T> {
+        RowsMut {
+            tile: self.sub_domain(),
+            part: self.state_mut(column),
+        }
+    }
+
+    /// The tile's own rows of a rate column.
+    ///
+    /// # Panics
+    /// As [`Own::rate`].
+    pub fn rate_rows<T: Element>(&mut self, column: Rate<T>) -> OwnRows<'a, T> {
+        OwnRows {
+            tile: self.sub_domain(),
+            part: self.rate(column),
+        }
+    }
+}

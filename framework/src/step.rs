@@ -1,0 +1,315 @@
+//! A step: the ordered list of stages that advances time by dt.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use crate::columns::{ColumnId, ColumnSet, Handle, Rate, State};
+use crate::domain::Domain;
+use crate::stage::{Fault, Moment, RateStage, UpdateStage};
+use crate::view::{Near, Own, Rates};
+
+/// A rate stage whose scratch type is forgotten.
+trait AnyRate<D: Domain>: Send + Sync {
+    fn name(&self) -> &str;
+    fn writes(&self) -> ColumnSet;
+    fn scratch(&self) -> Box<dyn Any + Send>;
+    fn rate(
+        &self,
+        near: &Near<'_, D>,
+        rates: &mut Rates<'_, D>,
+        scratch: &mut dyn Any,
+        moment: &Moment,
+    ) -> Result<(), Fault>;
+}
+
+/// An update stage whose scratch type is forgotten.
+trait AnyUpdate<D: Domain>: Send + Sync {
+    fn name(&self) -> &str;
+    fn scratch(&self) -> Box<dyn Any + Send>;
+    fn update(
+        &self,
+        own: &mut Own<'_, D>,
+        scratch: &mut dyn Any,
+        moment: &Moment,
+    ) -> Result<(), Fault>;
+}
+
+/// The scratch that this very stage made.
+fn own_scratch<S: 'static>(scratch: &mut dyn Any) -> &mut S {
+    scratch
+        .downcast_mut()
+        .expect("a stage is handed the scratch it made")
+}
+
+impl<D: Domain, S: RateStage<D>> AnyRate<D> for S {
+    fn name(&self) -> &str {
+        RateStage::name(self)
+    }
+    fn writes(&self) -> ColumnSet {
+        RateStage::writes(self).into_iter().collect()
+    }
+    fn scratch(&self) -> Box<dyn Any + Send> {
+        Box::new(S::Scratch::default())
+    }
+    fn rate(
+        &self,
+        near: &Near<'_, D>,
+        rates: &mut Rates<'_, D>,
+        scratch: &mut dyn Any,
+        moment: &Moment,
+    ) -> Result<(), Fault> {
+        RateStage::rate(self, near, rates, own_scratch(scratch), moment)
+    }
+}
+
+impl<D: Domain, S: UpdateStage<D>> AnyUpdate<D> for S {
+    fn name(&self) -> &str {
+        UpdateStage::name(self)
+    }
+    fn scratch(&self) -> Box<dyn Any + Send> {
+        Box::new(S::Scratch::default())
+    }
+    fn update(
+        &self,
+        own: &mut Own<'_, D>,
+        scratch: &mut dyn Any,
+        moment: &Moment,
+    ) -> Result<(), Fault> {
+        UpdateStage::update(self, own, own_scratch(scratch), moment)
+    }
+}
+
+/// A stage of either kind, shared by all the places of a step where it is used.
+pub struct Stage<D: Domain>(Kind<D>);
+
+enum Kind<D: Domain> {
+    Rate(Arc<dyn AnyRate<D>>, ColumnSet),
+    Update(Arc<dyn AnyUpdate<D>>),
+}
+
+impl<D: Domain> Clone for Stage<D> {
+    fn clone(&self) -> Self {
+        Self(match &self.0 {
+            Kind::Rate(stage, writes) => Kind::Rate(Arc::clone(stage), *writes),
+            Kind::Update(stage) => Kind::Update(Arc::clone(stage)),
+        })
+    }
+}
+
+impl<D: Domain> Stage<D> {
+    /// A rate stage.
+    pub fn rate(stage: impl RateStage<D>) -> Self {
+        let writes = AnyRate::writes(&stage);
+        Self(Kind::Rate(Arc::new(stage), writes))
+    }
+
+    /// An update stage.
+    pub fn update(stage: impl UpdateStage<D>) -> Self {
+        Self(Kind::Update(Arc::new(stage)))
+    }
+
+    /// The stage's name.
+    pub fn name(&self) -> &str {
+        match &self.0 {
+            Kind::Rate(stage, _) => stage.name(),
+            Kind::Update(stage) => stage.name(),
+        }
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Kind::Rate(a, _), Kind::Rate(b, _)) => Arc::ptr_eq(a, b),
+            (Kind::Update(a), Kind::Update(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+
+    pub(crate) fn is_rate(&self) -> bool {
+        matches!(self.0, Kind::Rate(..))
+    }
+
+    pub(crate) fn writes(&self) -> ColumnSet {
+        match &self.0 {
+            Kind::Rate(_, writes) => *writes,
+            Kind::Update(_) => ColumnSet::default(),
+        }
+    }
+
+    pub(crate) fn scratch(&self) -> Box<dyn Any + Send> {
+        match &self.0 {
+            Kind::Rate(stage, _) => stage.scratch(),
+            Kind::Update(stage) => stage.scratch(),
+        }
+    }
+
+    /// Runs a rate stage.
+    pub(crate) fn run_rate(
+        &self,
+        near: &Near<'_, D>,
+        rates: &mut Rates<'_, D>,
+        scratch: &mut dyn Any,
+        moment: &Moment,
+    ) -> Result<(), Fault> {
+        match &self.0 {
+            Kind::Rate(stage, _) => stage.rate(near, rates, scratch, moment),
+            Kind::Update(_) => unreachable!("parts never mix the two kinds"),
+        }
+    }
+
+    /// Runs an update stage.
+    pub(crate) fn run_update(
+        &self,
+        own: &mut Own<'_, D>,
+        scratch: &mut dyn Any,
+        moment: &Moment,
+    ) -> Result<(), Fault> {
+        match &self.0 {
+            Kind::Update(stage) => stage.update(own, scratch, moment),
+            Kind::Rate(..) => unreachable!("parts never mix the two kinds"),
+        }
+    }
+}
+
+/// One use of a stage in a step.
+pub(crate) struct Entry {
+    /// Index into the step's stages.
+    pub stage: usize,
+    /// The stage runs at `t + c dt`.
+    pub c: f64,
+    /// For each swapped pair, whether it has been exchanged an odd number of times in this step
+    /// before this entry: bit `k` for pair `k`.
+    pub swapped: u64,
+}
+
+/// A step: parts in order, each one rate stage, or update stages in a row.
+///
+/// Everybody may run a part once all neighbours have finished the part before; update stages in a
+/// row need no meeting between them, so they are one part.
+pub struct Step<D: Domain> {
+    pub(crate) stages: Vec<Stage<D>>,
+    pub(crate) entries: Vec<Entry>,
+    /// Part `p` is `entries[part_start[p]..part_start[p + 1]]`.
+    pub(crate) part_start: Vec<usize>,
+    pub(crate) pairs: Vec<(ColumnId, ColumnId)>,
+    /// Pairs exchanged an odd number of times in a whole step.
+    pub(crate) swapped: u64,
+}
+
+impl<D: Domain> Step<D> {
+    /// Begins an empty step.
+    pub fn builder() -> StepBuilder<D> {
+        StepBuilder {
+            step: Self {
+                stages: Vec::new(),
+                entries: Vec::new(),
+                part_start: Vec::new(),
+                pairs: Vec::new(),
+                swapped: 0,
+            },
+        }
+    }
+
+    /// Number of parts.
+    pub fn parts(&self) -> usize {
+        self.part_start.len() - 1
+    }
+
+    /// Name of a part: its stages' names.
+    pub fn part_name(&self, part: usize) -> String {
+        let entries = &self.entries[self.part_start[part]..self.part_start[part + 1]];
+        let names: Vec<_> = entries.iter().map(|e| self.stages[e.stage].name()).collect();
+        names.join(" + ")
+    }
+
+    /// The table to look a column's memory up in, for entry `entry` of a step before which the
+    /// pairs in `parity` have been exchanged; `None` for the state after the step's last stage.
+    pub(crate) fn swapped_before(&self, parity: u64, entry: Option<usize>) -> u64 {
+        parity ^ entry.map_or(self.swapped, |e| self.entries[e].swapped)
+    }
+}
+
+/// Builds a [`Step`] stage by stage.
+#[must_use]
+pub struct StepBuilder<D: Domain> {
+    step: Step<D>,
+}
+
+impl<D: Domain> StepBuilder<D> {
+    /// Adds a rate stage at the beginning of the step, `t`.
+    pub fn rate(self, stage: impl RateStage<D>) -> Self {
+        self.stage_at(0.0, &Stage::rate(stage))
+    }
+
+    /// Adds an update stage at the beginning of the step, `t`.
+    pub fn update(self, stage: impl UpdateStage<D>) -> Self {
+        self.stage_at(0.0, &Stage::update(stage))
+    }
+
+    /// Adds a stage at `t + c dt`; the same stage may be used several times.
+    pub fn stage_at(mut self, c: f64, stage: &Stage<D>) -> Self {
+        let step = &mut self.step;
+        let known = step.stages.iter().position(|s| s.is_same(stage));
+        let index = known.unwrap_or_else(|| {
+            step.stages.push(stage.clone());
+            step.stages.len() - 1
+        });
+        let joins_updates = !stage.is_rate()
+            && step
+                .entries
+                .last()
+                .is_some_and(|last| !step.stages[last.stage].is_rate());
+        if !joins_updates {
+            step.part_start.push(step.entries.len());
+        }
+        step.entries.push(Entry {
+            stage: index,
+            c,
+            swapped: step.swapped,
+        });
+        self
+    }
+
+    /// Adds several stages at `t + c dt`.
+    pub fn stages_at(self, c: f64, stages: &[Stage<D>]) -> Self {
+        stages.iter().fold(self, |step, stage| step.stage_at(c, stage))
+    }
+
+    /// Exchanges the memory of a state and a rate column: what a rate stage computed *is* the
+    /// next state (explicit stencils, lattice streaming). Costs nothing.
+    ///
+    /// # Panics
+    /// If one of the columns is exchanged with a third one elsewhere in the step.
+    pub fn swap<T: crate::columns::Element>(self, state: State<T>, rate: Rate<T>) -> Self {
+        self.exchange(state.id(), rate.id())
+    }
+
+    /// Exchanges the memory of two rate columns: the present rates become the last ones.
+    ///
+    /// # Panics
+    /// As [`StepBuilder::swap`].
+    pub fn swap_rates<T: crate::columns::Element>(self, a: Rate<T>, b: Rate<T>) -> Self {
+        self.exchange(a.id(), b.id())
+    }
+
+    pub(crate) fn exchange(mut self, a: ColumnId, b: ColumnId) -> Self {
+        let step = &mut self.step;
+        let pair = (a.min(b), a.max(b));
+        let index = step.pairs.iter().position(|&p| p == pair).unwrap_or_else(|| {
+            assert!(
+                step.pairs.iter().all(|&(x, y)| x != a && x != b && y != a && y != b),
+                "a column is swapped with two different columns"
+            );
+            assert!(step.pairs.len() < 64, "more than 64 swapped pairs");
+            step.pairs.push(pair);
+            step.pairs.len() - 1
+        });
+        step.swapped ^= 1 << index;
+        self
+    }
+
+    /// The step.
+    pub fn build(mut self) -> Step<D> {
+        self.step.part_start.push(self.step.entries.len());
+        self.step
+    }
+}
