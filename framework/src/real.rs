@@ -223,27 +223,39 @@ mod tests {
         assert!(f32::NAN.exp_lane().is_nan());
     }
 
+    /// Exponentials of `x` into `exponentials`, as a task for [`pulp::Arch::dispatch`].
+    struct Exponentials<'a, T> {
+        x: &'a [T],
+        exponentials: &'a mut [T],
+    }
+
+    impl<T: Real> pulp::WithSimd for Exponentials<'_, T> {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: pulp::Simd>(self, _: S) {
+            for (exponential, x) in self.exponentials.iter_mut().zip(self.x) {
+                *exponential = x.exp_lane();
+            }
+        }
+    }
+
+    fn assert_same_bits_in_every_instruction_set<T: Real>(x: &[T]) {
+        let baseline: Vec<T> = x.iter().map(|x| x.exp_lane()).collect();
+        let mut exponentials = vec![T::zero(); x.len()];
+        pulp::Arch::new().dispatch(Exponentials {
+            x,
+            exponentials: &mut exponentials,
+        });
+        assert_eq!(baseline, exponentials);
+    }
+
     #[test]
     fn exponential_has_the_same_bits_in_every_instruction_set() {
-        fn baseline<T: Real>(x: &[T]) -> Vec<T> {
-            x.iter().map(|x| x.exp_lane()).collect()
-        }
-        fn widest<T: Real>(x: &[T]) -> Vec<T> {
-            let mut exponentials = vec![T::zero(); x.len()];
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || {
-                    for (exponential, x) in exponentials.iter_mut().zip(x) {
-                        *exponential = x.exp_lane();
-                    }
-                },
-            );
-            exponentials
-        }
         let x: Vec<f64> = arguments(-720.0, 720.0, 100_003).collect();
-        assert_eq!(baseline(&x), widest(&x));
+        assert_same_bits_in_every_instruction_set(&x);
         let x: Vec<f32> = arguments(-90.0, 90.0, 100_003).map(f32::of).collect();
-        assert_eq!(baseline(&x), widest(&x));
+        assert_same_bits_in_every_instruction_set(&x);
     }
 
     #[test]
