@@ -199,6 +199,21 @@ impl Columns {
         Rate(self.declare(name, Role::Rate, T::KIND, false), PhantomData)
     }
 
+    /// Declares a column of the type of another one, named after it.
+    pub(crate) fn declare_like(&mut self, model: ColumnId, prefix: &str, role: Role) -> ColumnId {
+        let column = self.column(model);
+        let (name, kind) = (format!("{prefix}_{}", column.name), column.kind);
+        self.declare(&name, role, kind, role == Role::State)
+    }
+
+    /// Copies one column to another of the same type.
+    pub(crate) fn copy(&mut self, from: ColumnId, to: ColumnId) {
+        let (from, to) = (from.0 as usize, to.0 as usize);
+        let mut lines = std::mem::take(&mut self.columns[to].lines);
+        lines.copy_from_slice(&self.columns[from].lines);
+        self.columns[to].lines = lines;
+    }
+
     /// Marks a column as living from one step to the next (an integrator that reuses the
     /// last step's rates does this): checkpoints save it, re-sorting carries it along.
     pub fn keep(&mut self, column: ColumnId) {

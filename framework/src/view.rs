@@ -292,7 +292,7 @@ impl<'a, T> PartMut<'a, T> {
 }
 
 /// Which columns of one sub-domain have been borrowed, and how.
-#[derive(Default)]
+#[derive(Debug, Default, PartialEq)]
 struct Borrows {
     shared: ColumnSet,
     exclusive: ColumnSet,
@@ -423,20 +423,47 @@ impl<'a, D: Domain> Own<'a, D> {
     /// # Panics
     /// If the column is already borrowed or the handle belongs to other columns.
     pub fn state_mut<T: Element>(&mut self, column: State<T>) -> PartMut<'a, T> {
-        self.borrows.claim(column.id());
-        PartMut {
-            base: self.place.base(column.id()),
+        self.part_mut(column.id())
+    }
+
+    fn shared<H: Handle>(&mut self, column: H) -> Part<'a, H::Element> {
+        self.part(column.id())
+    }
+
+    /// Own part of any column, read only; panics as [`Own::state`].
+    pub(crate) fn part<T: Element>(&mut self, id: ColumnId) -> Part<'a, T> {
+        self.borrows.share(id);
+        Part {
+            base: self.place.base(id),
             spans: self.spans(),
             part: PhantomData,
         }
     }
 
-    fn shared<H: Handle>(&mut self, column: H) -> Part<'a, H::Element> {
-        self.borrows.share(column.id());
-        Part {
-            base: self.place.base(column.id()),
+    /// Own part of any column, to be written; panics as [`Own::state_mut`].
+    pub(crate) fn part_mut<T: Element>(&mut self, id: ColumnId) -> PartMut<'a, T> {
+        self.borrows.claim(id);
+        PartMut {
+            base: self.place.base(id),
             spans: self.spans(),
             part: PhantomData,
+        }
+    }
+
+    /// Element type of a column.
+    pub(crate) fn kind(&self, id: ColumnId) -> ElementKind {
+        self.place.slots[id.0 as usize].kind
+    }
+
+    /// The same own part with nothing borrowed, for as long as this one is not used.
+    ///
+    /// # Panics
+    /// If something has been borrowed from this one: it might still be in use.
+    pub(crate) fn reborrow(&mut self) -> Own<'_, D> {
+        assert_eq!(self.borrows, Borrows::default(), "columns are borrowed");
+        Own {
+            place: self.place,
+            borrows: Borrows::default(),
         }
     }
 

@@ -1,1 +1,2 @@
-
+pub mod dimension;
+pub mod kernel;
