@@ -36,7 +36,7 @@ impl Span {
 /// A domain describes itself by a [`Partition`], which is checked once when it is made:
 /// nothing a domain does later can make two sub-domains own the same point. Geometry
 /// (cells, rows) is the business of the domain's own [`SubDomain`] type.
-pub trait Domain: Send + Sync + Sized {
+pub trait Domain: Send + Sync + Sized + 'static {
     /// One piece of this space, with whatever geometry its stages need.
     type SubDomain<'a>: SubDomain
     where

@@ -12,7 +12,8 @@ use num_traits::{Float, FromPrimitive, NumAssign};
 /// [`num_traits::Float`] it promises plain bytes (columns are checkpointed as they lie in memory)
 /// and an exponential that compiles to full-width lanes.
 pub trait Real:
-    Float
+    crate::columns::Element
+    + Float
     + FromPrimitive
     + NumAssign
     + Sum
