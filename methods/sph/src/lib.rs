@@ -1,2 +1,3 @@
 pub mod dimension;
 pub mod kernel;
+pub mod packing;

@@ -4,6 +4,7 @@ use approx::assert_relative_eq;
 
 use super::{Kernel, SmoothingFunction};
 use crate::dimension::Dimension::{self, One, Three, Two};
+use crate::packing::Packing;
 use SmoothingFunction::{CubicSpline, Gaussian, QuarticSpline, QuinticSpline, WendlandC2};
 
 const FUNCTIONS: [SmoothingFunction; 5] = [
@@ -213,6 +214,59 @@ fn lanes_have_the_same_bits_in_every_instruction_set() {
         });
         assert_eq!(w, w_widest, "{function:?}");
         assert_eq!(factor, factor_widest, "{function:?}");
+    }
+}
+
+/// On a lattice the sums over neighbours reproduce a constant, `sum V W = 1`, the gradient of a
+/// linear field and the Laplacian of a quadratic one, both `- sum V F x_a x_b = delta_ab`
+/// (Brookshaw 1985 for the Laplacian).
+#[test]
+fn sums_over_a_lattice_are_consistent() {
+    let (spacing, h) = (0.1, 0.16);
+    for packing in [
+        Packing::Square,
+        Packing::Hexagonal,
+        Packing::Cubic,
+        Packing::HexagonalClosePacked,
+    ] {
+        let lattice = packing.fit([1.0; 3], spacing).unwrap();
+        let lengths = lattice.lengths();
+        let volume = lattice.volume_per_particle();
+        let here = lattice.positions().next().unwrap();
+        // To the nearest image of each particle: the box is wider than two supports.
+        let offsets: Vec<[f64; 3]> = lattice
+            .positions()
+            .map(|there| {
+                [0, 1, 2].map(|k| {
+                    let x = here[k] - there[k];
+                    if lengths[k] > 0.0 {
+                        x - lengths[k] * (x / lengths[k]).round()
+                    } else {
+                        x
+                    }
+                })
+            })
+            .collect();
+        let distance_squared: Vec<f64> = offsets
+            .iter()
+            .map(|x| x.iter().map(|c| c * c).sum())
+            .collect();
+        for function in FUNCTIONS {
+            let dimension = packing.dimension();
+            let kernel = Kernel::new(function, dimension, h);
+            let mut w = vec![0.0; offsets.len()];
+            let mut factor = w.clone();
+            kernel.evaluate(&distance_squared, &mut w, &mut factor);
+            assert_relative_eq!(volume * w.iter().sum::<f64>(), 1.0, epsilon = 0.008);
+            for a in 0..dimension.number() {
+                for b in 0..dimension.number() {
+                    let terms = offsets.iter().zip(&factor);
+                    let moment: f64 = terms.map(|(x, f)| -volume * f * x[a] * x[b]).sum();
+                    let exact = if a == b { 1.0 } else { 0.0 };
+                    assert_relative_eq!(moment, exact, epsilon = 0.008);
+                }
+            }
+        }
     }
 }
 
