@@ -17,12 +17,7 @@ pub struct Clock {
 impl Clock {
     /// Step 0 at time 0.
     pub fn new(dt: f64) -> Self {
-        Self {
-            step: 0,
-            origin_step: 0,
-            origin_time: 0.0,
-            dt,
-        }
+        Self { step: 0, origin_step: 0, origin_time: 0.0, dt }
     }
 
     /// Number of steps done.
@@ -48,12 +43,7 @@ impl Clock {
     /// The moment of a stage at `t + c dt` of step `step`.
     pub fn moment(&self, step: u64, c: f64) -> Moment {
         let time = self.time_at(step);
-        Moment {
-            step,
-            time,
-            dt: self.dt,
-            stage_time: time + c * self.dt,
-        }
+        Moment { step, time, dt: self.dt, stage_time: time + c * self.dt }
     }
 
     /// Goes on with another time step; the origin moves here only if it differs.

@@ -161,10 +161,7 @@ impl Columns {
 
     /// Columns over `points` points; none declared yet.
     pub fn new(points: usize) -> Self {
-        Self {
-            points,
-            columns: Vec::new(),
-        }
+        Self { points, columns: Vec::new() }
     }
 
     /// Number of points.
@@ -185,10 +182,7 @@ impl Columns {
     /// # Panics
     /// As [`Columns::state`].
     pub fn register<T: Element>(&mut self, name: &str) -> State<T> {
-        State(
-            self.declare(name, Role::Register, T::KIND, false),
-            PhantomData,
-        )
+        State(self.declare(name, Role::Register, T::KIND, false), PhantomData)
     }
 
     /// Declares a rate column, filled with zeros.
@@ -225,11 +219,7 @@ impl Columns {
             self.columns.iter().all(|c| c.name != name),
             "a column named {name:?} is declared twice"
         );
-        assert!(
-            self.columns.len() < Self::MOST,
-            "more than {} columns",
-            Self::MOST
-        );
+        assert!(self.columns.len() < Self::MOST, "more than {} columns", Self::MOST);
         self.columns.push(Column {
             name: name.to_owned(),
             role,
@@ -305,17 +295,12 @@ impl Columns {
 
     /// Address, element type and length of every column's memory, in order.
     pub(crate) fn addresses(&mut self) -> impl Iterator<Item = (*mut u8, ElementKind)> {
-        self.columns
-            .iter_mut()
-            .map(|c| (c.lines.as_mut_ptr().cast(), c.kind))
+        self.columns.iter_mut().map(|c| (c.lines.as_mut_ptr().cast(), c.kind))
     }
 
     /// Bytes held by all columns.
     pub fn memory(&self) -> usize {
-        self.columns
-            .iter()
-            .map(|c| c.lines.capacity() * size_of::<Line>())
-            .sum()
+        self.columns.iter().map(|c| c.lines.capacity() * size_of::<Line>()).sum()
     }
 }
 

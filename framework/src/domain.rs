@@ -72,7 +72,9 @@ pub trait Domain: Send + Sync + Sized + 'static {
         if saved.is_empty() {
             Ok(())
         } else {
-            Err(Fault::new("the checkpoint holds a division of space that this domain does not have"))
+            Err(Fault::new(
+                "the checkpoint holds a division of space that this domain does not have",
+            ))
         }
     }
 }
@@ -130,7 +132,9 @@ pub enum PartitionError {
         points: usize,
     },
     /// `a` names `b` as a neighbour but not the reverse, or itself, or twice.
-    #[error("sub-domain {a} lists {b} as a neighbour: neighbours must be other, distinct, ascending and mutual")]
+    #[error(
+        "sub-domain {a} lists {b} as a neighbour: neighbours must be other, distinct, ascending and mutual"
+    )]
     Neighbours {
         /// Who lists.
         a: usize,
@@ -196,26 +200,19 @@ impl Partition {
     /// The first violation found.
     pub fn seal(&mut self) -> Result<(), PartitionError> {
         self.by_start.clear();
-        self.by_start
-            .extend(self.spans.iter().filter(|s| s.start != s.end));
+        self.by_start.extend(self.spans.iter().filter(|s| s.start != s.end));
         self.by_start.sort_unstable_by_key(|s| s.start);
         let mut owned = 0;
         let mut last = Span { start: 0, end: 0 };
         for &span in &self.by_start {
             if span.start < last.end || span.end <= span.start || span.end > self.points {
-                return Err(PartitionError::Overlap {
-                    first: last,
-                    second: span,
-                });
+                return Err(PartitionError::Overlap { first: last, second: span });
             }
             owned += span.len();
             last = span;
         }
         if owned != self.points {
-            return Err(PartitionError::Unowned {
-                owned,
-                points: self.points,
-            });
+            return Err(PartitionError::Unowned { owned, points: self.points });
         }
         for a in 0..self.len() {
             let mut last = None;
@@ -266,11 +263,7 @@ impl Partition {
 
     /// Sub-domain `id`.
     pub fn piece(&self, id: usize) -> Piece<'_> {
-        Piece {
-            id,
-            spans: self.spans(id),
-            neighbours: self.neighbours(id),
-        }
+        Piece { id, spans: self.spans(id), neighbours: self.neighbours(id) }
     }
 
     /// Whether the rates of `id` may read the state of `owner`.
@@ -309,13 +302,7 @@ mod tests {
     fn a_point_without_owner_is_refused() {
         let mut p = Partition::new(4);
         p.push([span(0, 1), span(2, 4)], []);
-        assert_eq!(
-            p.seal(),
-            Err(PartitionError::Unowned {
-                owned: 3,
-                points: 4
-            })
-        );
+        assert_eq!(p.seal(), Err(PartitionError::Unowned { owned: 3, points: 4 }));
     }
 
     #[test]

@@ -163,13 +163,7 @@ impl<'a, D: Domain> Leg<'a, D> {
     /// # Errors
     /// The first failure, in order of step, part and sub-domain, among those that happened.
     pub fn finish(self) -> Result<(), Failure> {
-        let Self {
-            columns,
-            step,
-            steps,
-            failure,
-            ..
-        } = self;
+        let Self { columns, step, steps, failure, .. } = self;
         if (steps.end - steps.start) % 2 == 1 {
             for (k, &(a, b)) in step.pairs.iter().enumerate() {
                 if step.swapped >> k & 1 == 1 {
@@ -188,24 +182,14 @@ impl<'a, D: Domain> Leg<'a, D> {
         let parity = if odd { self.step.swapped } else { 0 };
         let key = self.step.swapped_before(parity, entry);
         let tables = &self.desk.tables;
-        let table = tables
-            .iter()
-            .find(|(k, _)| *k == key)
-            .expect("all keys are laid out");
-        Place {
-            domain: self.domain,
-            partition: self.partition,
-            id,
-            slots: &table.1,
-        }
+        let table = tables.iter().find(|(k, _)| *k == key).expect("all keys are laid out");
+        Place { domain: self.domain, partition: self.partition, id, slots: &table.1 }
     }
 
     fn scratch(&self, worker: usize) -> MutexGuard<'_, Vec<Box<dyn Any + Send>>> {
         // Every worker has its own: the lock is never contended. A poisoned scratch belongs to a
         // stage that panicked; the run ends with that.
-        self.desk.scratch[worker]
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
+        self.desk.scratch[worker].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn run_entry(
@@ -247,19 +231,16 @@ impl<'a, D: Domain> Leg<'a, D> {
         // SAFETY: as an update part; the step's last part has just been run here.
         let own = unsafe { Own::new(self.place(step, None, sub_domain)) };
         match self.desk.checked.iter().find(|&&id| !own.is_finite(id)) {
-            Some(&id) => Err(Cause::NotFinite {
-                column: self.columns.column(id).name().to_owned(),
-            }),
+            Some(&id) => {
+                Err(Cause::NotFinite { column: self.columns.column(id).name().to_owned() })
+            }
             None => Ok(()),
         }
     }
 
     fn fail(&self, failure: Failure) {
         let place = |f: &Failure| (f.step, f.part, f.sub_domain);
-        let mut first = self
-            .failure
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut first = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
         if first.as_ref().is_none_or(|f| place(&failure) < place(f)) {
             *first = Some(failure);
         }
@@ -285,13 +266,7 @@ impl<D: Domain> Work for Leg<'_, D> {
             return;
         }
         let fail = |stage: &str, cause| {
-            self.fail(Failure {
-                step,
-                part,
-                stage: stage.to_owned(),
-                sub_domain,
-                cause,
-            });
+            self.fail(Failure { step, part, stage: stage.to_owned(), sub_domain, cause });
         };
         for entry in self.step.part_start[part]..self.step.part_start[part + 1] {
             if let Err(cause) = self.run_entry(worker, step, entry, sub_domain) {

@@ -244,10 +244,7 @@ mod tests {
     fn assert_same_bits_in_every_instruction_set<T: Real>(x: &[T]) {
         let baseline: Vec<T> = x.iter().map(|x| x.exp_lane()).collect();
         let mut exponentials = vec![T::zero(); x.len()];
-        pulp::Arch::new().dispatch(Exponentials {
-            x,
-            exponentials: &mut exponentials,
-        });
+        pulp::Arch::new().dispatch(Exponentials { x, exponentials: &mut exponentials });
         assert_eq!(baseline, exponentials);
     }
 

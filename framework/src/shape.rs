@@ -124,20 +124,14 @@ impl Shape {
     /// Distance from `x` to the surface: negative inside, zero on the surface, positive outside.
     pub fn signed_distance(&self, x: [f64; 3]) -> f64 {
         match *self {
-            Shape::Cylinder {
-                axis,
-                centre,
-                radius,
-            } => norm(across(axis, difference(x, centre))) - radius,
+            Shape::Cylinder { axis, centre, radius } => {
+                norm(across(axis, difference(x, centre))) - radius
+            }
             Shape::Sphere { centre, radius } => norm(difference(x, centre)) - radius,
             Shape::Cuboid { low, high } => {
                 let beyond = beyond_faces(x, low, high);
                 let nearest_face = beyond.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                if nearest_face > 0.0 {
-                    norm(beyond.map(|b| b.max(0.0)))
-                } else {
-                    nearest_face
-                }
+                if nearest_face > 0.0 { norm(beyond.map(|b| b.max(0.0))) } else { nearest_face }
             }
             Shape::HalfSpace { point, outward } => dot(difference(x, point), unit(outward)),
         }
@@ -168,20 +162,12 @@ impl Shape {
             }
             Shape::Sphere { centre, .. } => {
                 let radial = difference(x, centre);
-                if norm(radial) > 0.0 {
-                    unit(radial)
-                } else {
-                    [1.0, 0.0, 0.0]
-                }
+                if norm(radial) > 0.0 { unit(radial) } else { [1.0, 0.0, 0.0] }
             }
             Shape::Cuboid { low, high } => {
                 let beyond = beyond_faces(x, low, high);
                 let side = |k: usize| {
-                    if x[k] - low[k] < high[k] - x[k] {
-                        -1.0
-                    } else {
-                        1.0
-                    }
+                    if x[k] - low[k] < high[k] - x[k] { -1.0 } else { 1.0 }
                 };
                 if beyond.iter().any(|&b| b > 0.0) {
                     unit([0, 1, 2].map(|k| side(k) * beyond[k].max(0.0)))

@@ -9,7 +9,7 @@ use crate::integrator::Plan;
 use crate::leg::{Cause, Desk, Failure, Leg, panic_message};
 use crate::schedule::{Executor, HandOut, Schedule};
 use crate::stage::Fault;
-use crate::whole::{Pace, Pacing, Partials, Whole, WholeStage};
+use crate::whole::{FixedPace, Pace, Pacing, Partials, Whole, WholeStage};
 
 /// What a method builds: divided space, fields, and the stages that advance them.
 pub struct Model<D: Domain> {
@@ -25,6 +25,26 @@ pub struct Model<D: Domain> {
     pub whole: Vec<Box<dyn WholeStage<D>>>,
     /// Time step control, run after them.
     pub pacing: Box<dyn Pacing<D>>,
+}
+
+impl<D: Domain> Model<D> {
+    /// A model that needs no whole-domain work, stepped by the same `dt` always.
+    pub fn with_fixed_dt(
+        method: &str,
+        domain: D,
+        columns: Columns,
+        plan: impl Into<Plan<D>>,
+        dt: f64,
+    ) -> Self {
+        Self {
+            method: method.to_owned(),
+            domain,
+            columns,
+            plan: plan.into(),
+            whole: Vec::new(),
+            pacing: Box::new(FixedPace(dt)),
+        }
+    }
 }
 
 /// How to run a model; none of it changes a result.
@@ -98,7 +118,8 @@ impl<D: Domain> Simulation<D> {
     /// # Errors
     /// If the system refuses threads.
     pub fn new(model: Model<D>, settings: Settings) -> std::io::Result<Self> {
-        let executor = Executor::new(settings.schedule, settings.workers, settings.hand_out.clone())?;
+        let executor =
+            Executor::new(settings.schedule, settings.workers, settings.hand_out.clone())?;
         Ok(Self {
             desk: Desk::new(&model.plan.step, &model.columns, settings.workers),
             executor,

@@ -36,9 +36,7 @@ trait AnyUpdate<D: Domain>: Send + Sync {
 
 /// The scratch that this very stage made.
 fn own_scratch<S: 'static>(scratch: &mut dyn Any) -> &mut S {
-    scratch
-        .downcast_mut()
-        .expect("a stage is handed the scratch it made")
+    scratch.downcast_mut().expect("a stage is handed the scratch it made")
 }
 
 impl<D: Domain, S: RateStage<D>> AnyRate<D> for S {
@@ -254,18 +252,11 @@ impl<D: Domain> StepBuilder<D> {
             step.stages.len() - 1
         });
         let joins_updates = !stage.is_rate()
-            && step
-                .entries
-                .last()
-                .is_some_and(|last| !step.stages[last.stage].is_rate());
+            && step.entries.last().is_some_and(|last| !step.stages[last.stage].is_rate());
         if !joins_updates {
             step.part_start.push(step.entries.len());
         }
-        step.entries.push(Entry {
-            stage: index,
-            c,
-            swapped: step.swapped,
-        });
+        step.entries.push(Entry { stage: index, c, swapped: step.swapped });
         self
     }
 

@@ -35,10 +35,7 @@ impl Shared {
         // SAFETY: `Team::run` keeps the closure alive until all members have met in `end`.
         let task = unsafe { &*task };
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| task(worker))) {
-            self.panic
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .get_or_insert(panic);
+            self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(panic);
         }
         true
     }
@@ -75,17 +72,15 @@ impl Team {
         let threads = (1..workers)
             .map(|worker| {
                 let shared = Arc::clone(&shared);
-                std::thread::Builder::new()
-                    .name(format!("finegrain-{worker}"))
-                    .spawn(move || {
-                        loop {
-                            shared.begin.arrive(|| {});
-                            if !shared.work(worker) {
-                                break;
-                            }
-                            shared.end.arrive(|| {});
+                std::thread::Builder::new().name(format!("finegrain-{worker}")).spawn(move || {
+                    loop {
+                        shared.begin.arrive(|| {});
+                        if !shared.work(worker) {
+                            break;
                         }
-                    })
+                        shared.end.arrive(|| {});
+                    }
+                })
             })
             .collect::<std::io::Result<Vec<_>>>()?;
         Ok(Self { shared, threads })
@@ -110,12 +105,7 @@ impl Team {
         self.shared.begin.arrive(|| {});
         self.shared.work(0);
         self.shared.end.arrive(|| {});
-        let panic = self
-            .shared
-            .panic
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
+        let panic = self.shared.panic.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(panic) = panic {
             resume_unwind(panic);
         }

@@ -35,11 +35,7 @@ unsafe impl Sync for Slot {}
 /// Writes the slots of all columns, in order of their ids, into `slots`.
 pub(crate) fn slots_of(columns: &mut Columns, slots: &mut Vec<Slot>) {
     slots.clear();
-    slots.extend(
-        columns
-            .addresses()
-            .map(|(address, kind)| Slot { address, kind }),
-    );
+    slots.extend(columns.addresses().map(|(address, kind)| Slot { address, kind }));
 }
 
 /// A sub-domain with the memory that its stages are to work on.
@@ -59,10 +55,7 @@ impl<D> Copy for Place<'_, D> {}
 
 impl<D> Place<'_, D> {
     fn base<T: Element>(&self, id: ColumnId) -> *mut T {
-        let slot = self
-            .slots
-            .get(id.0 as usize)
-            .filter(|slot| slot.kind == T::KIND);
+        let slot = self.slots.get(id.0 as usize).filter(|slot| slot.kind == T::KIND);
         match slot {
             Some(slot) => slot.address.cast(),
             None => panic!("column handle {} belongs to other columns", id.0),
@@ -150,11 +143,7 @@ impl<'a, D: Domain> Near<'a, D> {
                     .any(|s| s.start <= span.start && span.end <= s.end),
             "sub-domain {id} reads points {span:?}, which sub-domain {owner} does not own"
         );
-        Reach {
-            span,
-            seen_from: id,
-            near: PhantomData,
-        }
+        Reach { span, seen_from: id, near: PhantomData }
     }
 
     /// A state column, as far as it can be seen from here.
@@ -214,11 +203,7 @@ impl<'a, T> View<'a, T> {
 
     /// The sub-domain's own values.
     pub fn own(&self) -> Part<'a, T> {
-        Part {
-            base: self.base,
-            spans: self.spans,
-            part: PhantomData,
-        }
+        Part { base: self.base, spans: self.spans, part: PhantomData }
     }
 }
 
@@ -300,11 +285,7 @@ struct Borrows {
 
 impl Borrows {
     fn share(&mut self, id: ColumnId) {
-        assert!(
-            !self.exclusive.contains(id),
-            "column {} is already borrowed for writing",
-            id.0
-        );
+        assert!(!self.exclusive.contains(id), "column {} is already borrowed for writing", id.0);
         self.shared.insert(id);
     }
 
@@ -329,11 +310,7 @@ impl<'a, D: Domain> Rates<'a, D> {
     /// As [`Near::new`] for the partition and slots. As long as `'a` lasts, nobody else touches
     /// the columns in `writes` in the sub-domain's spans.
     pub(crate) unsafe fn new(place: Place<'a, D>, writes: ColumnSet) -> Self {
-        Self {
-            place,
-            writes,
-            borrows: Borrows::default(),
-        }
+        Self { place, writes, borrows: Borrows::default() }
     }
 
     /// The sub-domain's part of a rate column; each column can be had once per call.
@@ -376,10 +353,7 @@ impl<'a, D: Domain> Own<'a, D> {
     /// As [`Near::new`] for the partition and slots. As long as `'a` lasts, nobody else touches
     /// the sub-domain's spans of any column.
     pub(crate) unsafe fn new(place: Place<'a, D>) -> Self {
-        Self {
-            place,
-            borrows: Borrows::default(),
-        }
+        Self { place, borrows: Borrows::default() }
     }
 
     /// The divided space.
@@ -433,21 +407,13 @@ impl<'a, D: Domain> Own<'a, D> {
     /// Own part of any column, read only; panics as [`Own::state`].
     pub(crate) fn part<T: Element>(&mut self, id: ColumnId) -> Part<'a, T> {
         self.borrows.share(id);
-        Part {
-            base: self.place.base(id),
-            spans: self.spans(),
-            part: PhantomData,
-        }
+        Part { base: self.place.base(id), spans: self.spans(), part: PhantomData }
     }
 
     /// Own part of any column, to be written; panics as [`Own::state_mut`].
     pub(crate) fn part_mut<T: Element>(&mut self, id: ColumnId) -> PartMut<'a, T> {
         self.borrows.claim(id);
-        PartMut {
-            base: self.place.base(id),
-            spans: self.spans(),
-            part: PhantomData,
-        }
+        PartMut { base: self.place.base(id), spans: self.spans(), part: PhantomData }
     }
 
     /// Element type of a column.
@@ -461,10 +427,7 @@ impl<'a, D: Domain> Own<'a, D> {
     /// If something has been borrowed from this one: it might still be in use.
     pub(crate) fn reborrow(&mut self) -> Own<'_, D> {
         assert_eq!(self.borrows, Borrows::default(), "columns are borrowed");
-        Own {
-            place: self.place,
-            borrows: Borrows::default(),
-        }
+        Own { place: self.place, borrows: Borrows::default() }
     }
 
     /// Whether all own values of a column are finite; integers always are.

@@ -53,12 +53,7 @@ impl<D: Domain> Whole<'_, D> {
         values.resize(partition.len() * N, 0.0);
         let (domain, slots) = (&*self.domain, &**slots);
         self.team.for_each_chunk(values, N, |id, values| {
-            let place = Place {
-                domain,
-                partition,
-                id,
-                slots,
-            };
+            let place = Place { domain, partition, id, slots };
             // SAFETY: the partition is sealed and has as many points as the columns, which are
             // borrowed exclusively here; nobody writes any of them during the reduction.
             let near = unsafe { Near::new(place, ColumnSet::default()) };
@@ -86,9 +81,7 @@ impl<D: Domain> Whole<'_, D> {
         &mut self,
         partial: impl Fn(&Near<'_, D>) -> [f64; N] + Sync,
     ) -> [f64; N] {
-        self.reduce([f64::NEG_INFINITY; N], partial, |a, b| {
-            if a > b || a.is_nan() { a } else { b }
-        })
+        self.reduce([f64::NEG_INFINITY; N], partial, |a, b| if a > b || a.is_nan() { a } else { b })
     }
 }
 
@@ -132,15 +125,9 @@ pub struct FixedPace(pub f64);
 impl<D: Domain> Pacing<D> for FixedPace {
     fn pace(&mut self, _: &mut Whole<'_, D>) -> Result<Pace, Fault> {
         if self.0 > 0.0 && self.0.is_finite() {
-            Ok(Pace {
-                dt: self.0,
-                steps: u64::MAX,
-            })
+            Ok(Pace { dt: self.0, steps: u64::MAX })
         } else {
-            Err(Fault::new(format!(
-                "time step {} must be positive and finite",
-                self.0
-            )))
+            Err(Fault::new(format!("time step {} must be positive and finite", self.0)))
         }
     }
 }

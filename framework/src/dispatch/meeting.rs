@@ -41,8 +41,7 @@ impl Meeting {
             self.held.store(held.wrapping_add(1), Ordering::Release);
             self.bell.ring();
         } else {
-            self.bell
-                .wait(self.spin, || self.held.load(Ordering::Acquire) != held);
+            self.bell.wait(self.spin, || self.held.load(Ordering::Acquire) != held);
         }
     }
 }

@@ -34,12 +34,8 @@ pub struct Server {
 impl ReadyDispatch {
     /// A dispatch and the ends for `workers` workers.
     pub fn new(workers: usize) -> (Self, Vec<Server>) {
-        let servers: Vec<_> = (0..workers)
-            .map(|worker| Server {
-                worker,
-                own: Worker::new_lifo(),
-            })
-            .collect();
+        let servers: Vec<_> =
+            (0..workers).map(|worker| Server { worker, own: Worker::new_lifo() }).collect();
         let dispatch = Self {
             stealers: servers.iter().map(|s| s.own.stealer()).collect(),
             stretches: servers.iter().map(|_| CachePadded::default()).collect(),

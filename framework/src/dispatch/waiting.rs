@@ -27,11 +27,7 @@ pub(crate) struct Bell {
 
 impl Bell {
     pub fn new() -> Self {
-        Self {
-            sleepers: AtomicUsize::new(0),
-            lock: Mutex::new(()),
-            wake: Condvar::new(),
-        }
+        Self { sleepers: AtomicUsize::new(0), lock: Mutex::new(()), wake: Condvar::new() }
     }
 
     /// Waits until `happened`; spins first only if `spin`.

@@ -45,20 +45,12 @@ pub(super) fn leapfrog<D: Domain>(
         .add_dt(&evolution.motions, 1.0)
         .add_dt_squared(&accelerations, 0.5)
         .add_dt(&evolution.rates, 1.0);
-    let correct = Linear::new()
-        .add_dt(&evolution.rates, 0.5)
-        .add_dt(&last, -0.5);
+    let correct = Linear::new().add_dt(&evolution.rates, 0.5).add_dt(&last, -0.5);
     let mut step = Step::builder().stage_at(0.0, &Stage::update(drift_and_predict));
     for (&(_, rate), &(_, last)) in evolution.rates.iter().zip(&last) {
         step = step.exchange(rate, last);
     }
-    let step = step
-        .stages_at(1.0, evaluation)
-        .stage_at(1.0, &Stage::update(correct))
-        .build();
+    let step = step.stages_at(1.0, evaluation).stage_at(1.0, &Stage::update(correct)).build();
     let prologue = Step::builder().stages_at(0.0, evaluation).build();
-    Plan {
-        prologue: Some(prologue),
-        step,
-    }
+    Plan { prologue: Some(prologue), step }
 }

@@ -59,23 +59,12 @@ impl Linear {
         slopes: &[(ColumnId, ColumnId)],
         weight: f64,
     ) -> Self {
-        registers
-            .iter()
-            .zip(slopes)
-            .fold(self, |linear, (&(register, state), &slope)| {
-                linear
-                    .copy(&[(state, register)])
-                    .add_dt(&[slope], weight)
-            })
+        registers.iter().zip(slopes).fold(self, |linear, (&(register, state), &slope)| {
+            linear.copy(&[(state, register)]).add_dt(&[slope], weight)
+        })
     }
 
-    fn push(
-        mut self,
-        pairs: &[(ColumnId, ColumnId)],
-        keep: f64,
-        weight: f64,
-        power: i32,
-    ) -> Self {
+    fn push(mut self, pairs: &[(ColumnId, ColumnId)], keep: f64, weight: f64, power: i32) -> Self {
         self.0.extend(pairs.iter().map(|&(target, source)| Axpy {
             target,
             keep,
@@ -154,9 +143,5 @@ pub(super) fn matched(
     targets: &[(ColumnId, ColumnId)],
     sources: &[(ColumnId, ColumnId)],
 ) -> Vec<(ColumnId, ColumnId)> {
-    targets
-        .iter()
-        .zip(sources)
-        .map(|(&(target, _), &(_, source))| (target, source))
-        .collect()
+    targets.iter().zip(sources).map(|(&(target, _), &(_, source))| (target, source)).collect()
 }

@@ -68,14 +68,8 @@ pub enum Integrator {
 
 impl Integrator {
     /// All integrators.
-    pub const ALL: [Self; 6] = [
-        Self::Euler,
-        Self::SymplecticEuler,
-        Self::Leapfrog,
-        Self::Rk2,
-        Self::SspRk3,
-        Self::Rk4,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Euler, Self::SymplecticEuler, Self::Leapfrog, Self::Rk2, Self::SspRk3, Self::Rk4];
 
     /// The name used in scenes.
     pub fn name(self) -> &'static str {
@@ -121,13 +115,10 @@ impl std::str::FromStr for Integrator {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|i| i.name() == name)
-            .ok_or_else(|| {
-                let all: Vec<_> = Self::ALL.iter().map(|i| i.name()).collect();
-                format!("no integrator {name:?}; there are {}", all.join(", "))
-            })
+        Self::ALL.into_iter().find(|i| i.name() == name).ok_or_else(|| {
+            let all: Vec<_> = Self::ALL.iter().map(|i| i.name()).collect();
+            format!("no integrator {name:?}; there are {}", all.join(", "))
+        })
     }
 }
 
@@ -141,9 +132,6 @@ pub struct Plan<D: Domain> {
 
 impl<D: Domain> From<Step<D>> for Plan<D> {
     fn from(step: Step<D>) -> Self {
-        Self {
-            prologue: None,
-            step,
-        }
+        Self { prologue: None, step }
     }
 }

@@ -40,12 +40,8 @@ pub(super) fn ssp_rk3<D: Domain>(
     let start = registers(columns, "start", &slopes);
     let restart = reversed(&start);
     let first = Linear::new().copy(&start).add_dt(&slopes, 1.0);
-    let second = Linear::new()
-        .blend_dt(&slopes, 1.0 / 4.0, 1.0 / 4.0)
-        .add(&restart, 3.0 / 4.0);
-    let third = Linear::new()
-        .blend_dt(&slopes, 2.0 / 3.0, 2.0 / 3.0)
-        .add(&restart, 1.0 / 3.0);
+    let second = Linear::new().blend_dt(&slopes, 1.0 / 4.0, 1.0 / 4.0).add(&restart, 3.0 / 4.0);
+    let third = Linear::new().blend_dt(&slopes, 2.0 / 3.0, 2.0 / 3.0).add(&restart, 1.0 / 3.0);
     Step::builder()
         .stages_at(0.0, evaluation)
         .stage_at(0.0, &Stage::update(first))
@@ -70,16 +66,9 @@ pub(super) fn rk4<D: Domain>(
     let sum = registers(columns, "sum", &slopes);
     let result = reversed(&sum);
     let gather = matched(&sum, &slopes);
-    let first = Linear::new()
-        .copy(&start)
-        .copy(&sum)
-        .add_dt(&gather, 1.0 / 6.0)
-        .add_dt(&slopes, 1.0 / 2.0);
-    let again = |weight| {
-        Linear::new()
-            .add_dt(&gather, 1.0 / 3.0)
-            .restart(&start, &slopes, weight)
-    };
+    let first =
+        Linear::new().copy(&start).copy(&sum).add_dt(&gather, 1.0 / 6.0).add_dt(&slopes, 1.0 / 2.0);
+    let again = |weight| Linear::new().add_dt(&gather, 1.0 / 3.0).restart(&start, &slopes, weight);
     let fourth = Linear::new().add_dt(&gather, 1.0 / 6.0).copy(&result);
     Step::builder()
         .stages_at(0.0, evaluation)

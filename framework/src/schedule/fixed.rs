@@ -13,9 +13,7 @@ pub(super) struct Fixed {
 
 impl Fixed {
     pub fn new(workers: usize) -> Self {
-        Self {
-            meeting: Meeting::new(workers),
-        }
+        Self { meeting: Meeting::new(workers) }
     }
 
     pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: Order) {

@@ -12,10 +12,8 @@ pub(super) struct ForkJoin {
 
 impl ForkJoin {
     pub fn new(workers: usize) -> std::io::Result<Self> {
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(workers)
-            .build()
-            .map_err(std::io::Error::other)?;
+        let pool =
+            ThreadPoolBuilder::new().num_threads(workers).build().map_err(std::io::Error::other)?;
         Ok(Self { pool })
     }
 
@@ -23,12 +21,10 @@ impl ForkJoin {
         for step in work.steps() {
             for part in 0..work.parts() {
                 self.pool.install(|| {
-                    (0..work.partition().len())
-                        .into_par_iter()
-                        .for_each(|place| {
-                            let worker = rayon::current_thread_index().unwrap_or(0);
-                            work.run(worker, step, part, order.at(place));
-                        });
+                    (0..work.partition().len()).into_par_iter().for_each(|place| {
+                        let worker = rayon::current_thread_index().unwrap_or(0);
+                        work.run(worker, step, part, order.at(place));
+                    });
                 });
                 if work.failed() {
                     return;

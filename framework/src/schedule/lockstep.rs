@@ -13,15 +13,12 @@ pub(super) struct Lockstep {
 
 impl Lockstep {
     pub fn new(workers: usize) -> Self {
-        Self {
-            dispatch: Dispatch::new(0, 1, workers),
-        }
+        Self { dispatch: Dispatch::new(0, 1, workers) }
     }
 
     pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: Order) {
         let sub_domains = work.partition().len();
-        self.dispatch
-            .reset(sub_domains, chunk(sub_domains, team.workers()));
+        self.dispatch.reset(sub_domains, chunk(sub_domains, team.workers()));
         let dispatch = &self.dispatch;
         // Decided by one worker for all, inside the meeting: if each looked for itself, one could
         // leave while another waits for it.

@@ -31,13 +31,8 @@ pub enum Schedule {
 
 impl Schedule {
     /// All schedules.
-    pub const ALL: [Self; 5] = [
-        Self::Serial,
-        Self::Lockstep,
-        Self::PeerToPeer,
-        Self::ForkJoin,
-        Self::Fixed,
-    ];
+    pub const ALL: [Self; 5] =
+        [Self::Serial, Self::Lockstep, Self::PeerToPeer, Self::ForkJoin, Self::Fixed];
 
     /// The name used on command lines.
     pub fn name(self) -> &'static str {
@@ -53,7 +48,7 @@ impl Schedule {
 
 impl std::fmt::Display for Schedule {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name())
+        f.pad(self.name())
     }
 }
 
@@ -61,13 +56,10 @@ impl std::str::FromStr for Schedule {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|s| s.name() == name)
-            .ok_or_else(|| {
-                let all: Vec<_> = Self::ALL.iter().map(|s| s.name()).collect();
-                format!("no schedule {name:?}; there are {}", all.join(", "))
-            })
+        Self::ALL.into_iter().find(|s| s.name() == name).ok_or_else(|| {
+            let all: Vec<_> = Self::ALL.iter().map(|s| s.name()).collect();
+            format!("no schedule {name:?}; there are {}", all.join(", "))
+        })
     }
 }
 
@@ -101,12 +93,7 @@ impl Executor {
             Schedule::ForkJoin => Protocol::ForkJoin(fork_join::ForkJoin::new(workers)?),
             Schedule::Fixed => Protocol::Fixed(fixed::Fixed::new(workers)),
         };
-        Ok(Self {
-            schedule,
-            hand_out,
-            team: Team::new(workers)?,
-            protocol,
-        })
+        Ok(Self { schedule, hand_out, team: Team::new(workers)?, protocol })
     }
 
     pub fn schedule(&self) -> Schedule {

@@ -34,10 +34,7 @@ impl PeerToPeer {
         let (dispatch, servers) = ReadyDispatch::new(workers);
         Self {
             dispatch,
-            servers: servers
-                .into_iter()
-                .map(|s| CachePadded::new(Mutex::new(s)))
-                .collect(),
+            servers: servers.into_iter().map(|s| CachePadded::new(Mutex::new(s))).collect(),
             progress: Progress::default(),
         }
     }

@@ -6,28 +6,12 @@ const INFINITY: f64 = f64::INFINITY;
 fn shapes() -> Vec<Shape> {
     let centre = [0.3, -0.2, 0.1];
     let mut shapes: Vec<Shape> = [Axis::X, Axis::Y, Axis::Z]
-        .map(|axis| Shape::Cylinder {
-            axis,
-            centre,
-            radius: 0.4,
-        })
+        .map(|axis| Shape::Cylinder { axis, centre, radius: 0.4 })
         .into();
-    shapes.push(Shape::Sphere {
-        centre,
-        radius: 0.5,
-    });
-    shapes.push(Shape::Cuboid {
-        low: [-0.5, -0.4, -0.3],
-        high: [0.2, 0.6, 0.4],
-    });
-    shapes.push(Shape::Cuboid {
-        low: [-0.5, -0.4, -INFINITY],
-        high: [0.2, INFINITY, INFINITY],
-    });
-    shapes.push(Shape::HalfSpace {
-        point: centre,
-        outward: [1.0, -2.0, 3.0],
-    });
+    shapes.push(Shape::Sphere { centre, radius: 0.5 });
+    shapes.push(Shape::Cuboid { low: [-0.5, -0.4, -0.3], high: [0.2, 0.6, 0.4] });
+    shapes.push(Shape::Cuboid { low: [-0.5, -0.4, -INFINITY], high: [0.2, INFINITY, INFINITY] });
+    shapes.push(Shape::HalfSpace { point: centre, outward: [1.0, -2.0, 3.0] });
     shapes
 }
 
@@ -43,10 +27,7 @@ fn distance_changes_no_faster_than_its_argument() {
     for shape in shapes() {
         for (a, b) in points(2000).zip(points(2001).skip(1)) {
             let change = (shape.signed_distance(a) - shape.signed_distance(b)).abs();
-            assert!(
-                change <= norm(difference(a, b)) + 1e-14,
-                "{shape:?} {a:?} {b:?}"
-            );
+            assert!(change <= norm(difference(a, b)) + 1e-14, "{shape:?} {a:?} {b:?}");
         }
     }
 }
@@ -89,10 +70,7 @@ fn surface_is_reached_by_going_back_along_the_normal() {
 
 #[test]
 fn distances_around_a_cuboid() {
-    let cuboid = Shape::Cuboid {
-        low: [0.0, 0.0, 0.0],
-        high: [2.0, 3.0, 4.0],
-    };
+    let cuboid = Shape::Cuboid { low: [0.0, 0.0, 0.0], high: [2.0, 3.0, 4.0] };
     // From a corner, an edge, a face, on the surface, and inside.
     let third = 1.0 / 3.0_f64.sqrt();
     let half = 0.5_f64.sqrt();
@@ -116,11 +94,7 @@ fn normal_at_a_centre_is_a_unit_vector() {
     let centre = [0.1, 0.2, 0.3];
     let radius = 1.0;
     for axis in [Axis::X, Axis::Y, Axis::Z] {
-        let cylinder = Shape::Cylinder {
-            axis,
-            centre,
-            radius,
-        };
+        let cylinder = Shape::Cylinder { axis, centre, radius };
         let normal = cylinder.normal(centre);
         assert_eq!(norm(normal), 1.0);
         assert_eq!(across(axis, normal), normal);
@@ -137,26 +111,14 @@ fn shapes_that_describe_no_body_are_refused() {
         assert_eq!(shape.check(), Ok(()));
     }
     for radius in [0.0, -1.0, f64::NAN, INFINITY] {
-        let sphere = Shape::Sphere {
-            centre: origin,
-            radius,
-        };
+        let sphere = Shape::Sphere { centre: origin, radius };
         assert!(matches!(sphere.check(), Err(ShapeError::Radius(_))));
     }
-    let flat = Shape::Cuboid {
-        low: origin,
-        high: [1.0, 0.0, 1.0],
-    };
+    let flat = Shape::Cuboid { low: origin, high: [1.0, 0.0, 1.0] };
     assert!(matches!(flat.check(), Err(ShapeError::Corners { .. })));
-    let lost = Shape::Sphere {
-        centre: [0.0, f64::NAN, 0.0],
-        radius: 1.0,
-    };
+    let lost = Shape::Sphere { centre: [0.0, f64::NAN, 0.0], radius: 1.0 };
     assert!(matches!(lost.check(), Err(ShapeError::Position(_))));
-    let undirected = Shape::HalfSpace {
-        point: origin,
-        outward: origin,
-    };
+    let undirected = Shape::HalfSpace { point: origin, outward: origin };
     assert!(matches!(undirected.check(), Err(ShapeError::Direction(_))));
 }
 

@@ -106,22 +106,14 @@ impl Packing {
             repeats[side] = (length / cell).round();
             if !(repeats[side] >= 1.0 && length.is_finite()) {
                 let least = 0.5 * cell;
-                return Err(PackingError::Side {
-                    side,
-                    length,
-                    least,
-                });
+                return Err(PackingError::Side { side, length, least });
             }
         }
         let count = self.basis().len() as f64 * repeats.iter().product::<f64>();
         if count > 2.0_f64.powi(32) {
             return Err(PackingError::Count(count));
         }
-        Ok(Lattice {
-            packing: self,
-            spacing,
-            repeats: repeats.map(|n| n as usize),
-        })
+        Ok(Lattice { packing: self, spacing, repeats: repeats.map(|n| n as usize) })
     }
 }
 

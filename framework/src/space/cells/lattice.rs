@@ -68,14 +68,6 @@ impl Lattice {
         ((k * self.counts[1] + j) * self.counts[0] + i) as u64
     }
 
-    /// Inverse of [`Lattice::key`].
-    #[inline]
-    pub fn cell_of(&self, key: u64) -> [i64; 3] {
-        let [nx, ny, _] = self.counts;
-        let key = key as i64;
-        [key % nx, key / nx % ny, key / (nx * ny)]
-    }
-
     /// Blocks in each direction.
     fn blocks(&self) -> [i64; 3] {
         std::array::from_fn(|a| (self.counts[a] + self.block[a] - 1) / self.block[a])

@@ -89,12 +89,7 @@ impl<T: Real> Cells<T> {
         positions: &[State<T>],
         options: CellsOptions,
     ) -> Result<Self, Fault> {
-        let CellsOptions {
-            region,
-            range,
-            skin,
-            block_points,
-        } = options;
+        let CellsOptions { region, range, skin, block_points } = options;
         let dims = region.lower.len();
         if !(1..=3).contains(&dims)
             || [region.upper.len(), region.periodic.len(), positions.len()] != [dims; 3]
@@ -187,11 +182,9 @@ impl<T: Real> Cells<T> {
         let dims = self.dims();
         let lattice = &self.lattice;
         let at: Vec<&[T]> = self.positions.iter().map(|&p| columns.values(p)).collect();
-        let moved = self
-            .sorter
-            .sort(team, columns.points(), lattice.sort_keys(), |i| {
-                lattice.sort_key(lattice.coordinates(position(&at[..dims], i)))
-            });
+        let moved = self.sorter.sort(team, columns.points(), lattice.sort_keys(), |i| {
+            lattice.sort_key(lattice.coordinates(position(&at[..dims], i)))
+        });
         if moved {
             self.reorder(columns, team);
         }
@@ -244,9 +237,9 @@ impl<T: Real> Cells<T> {
             let (mut low, mut high) = (self.region.lower[a], self.region.upper[a]);
             if !periodic[a] {
                 let values = columns.values(self.positions[a]);
-                let (least, most) = values.iter().fold((T::infinity(), T::neg_infinity()), |m, &x| {
-                    (m.0.min(x), m.1.max(x))
-                });
+                let (least, most) = values
+                    .iter()
+                    .fold((T::infinity(), T::neg_infinity()), |m, &x| (m.0.min(x), m.1.max(x)));
                 if !values.is_empty() {
                     (low, high) = (least.as_f64(), most.as_f64());
                 }
@@ -260,10 +253,8 @@ impl<T: Real> Cells<T> {
         // underestimate for a sparse one; blocks are then a little large.
         let cells: f64 = lattice.counts.iter().map(|&n| n as f64).product();
         let per_cell = (columns.points() as f64 / cells).max(1.0);
-        let edge = (self.block_points as f64 / per_cell)
-            .powf(1.0 / dims as f64)
-            .round()
-            .max(1.0) as i64;
+        let edge =
+            (self.block_points as f64 / per_cell).powf(1.0 / dims as f64).round().max(1.0) as i64;
         for a in 0..dims {
             lattice.block[a] = edge.min(lattice.counts[a]);
         }
@@ -271,11 +262,8 @@ impl<T: Real> Cells<T> {
     }
 
     fn reorder(&mut self, columns: &mut Columns, team: &mut Team) {
-        let kept: Vec<_> = columns
-            .iter()
-            .filter(|(_, c)| c.is_kept())
-            .map(|(id, c)| (id, c.kind()))
-            .collect();
+        let kept: Vec<_> =
+            columns.iter().filter(|(_, c)| c.is_kept()).map(|(id, c)| (id, c.kind())).collect();
         for (id, kind) in kept {
             self.spare.resize(columns.lines(id), Line::zeroed());
             let from = columns.bytes(id);
@@ -301,7 +289,8 @@ impl<T: Real> Cells<T> {
                 self.cells.push((key, i as u32));
             }
         }
-        self.cell_table.fill(self.cells.iter().map(|&(key, _)| lattice.key(lattice.cell_sorted(key))));
+        self.cell_table
+            .fill(self.cells.iter().map(|&(key, _)| lattice.key(lattice.cell_sorted(key))));
         let volume = lattice.block.iter().product::<i64>() as u64;
         self.blocks.clear();
         for (c, &(key, _)) in self.cells.iter().enumerate() {
@@ -323,8 +312,7 @@ impl<T: Real> Cells<T> {
                 for &j in ys {
                     for &i in xs {
                         let key = lattice.block_key([i, j, k]);
-                        self.near_blocks
-                            .extend(self.block_table.get(key).map(|b| b as u32));
+                        self.near_blocks.extend(self.block_table.get(key).map(|b| b as u32));
                     }
                 }
             }
@@ -343,9 +331,7 @@ impl<T: Real> Cells<T> {
 
     /// One past the last cell of a block.
     fn cell_end(&self, block: usize) -> usize {
-        self.blocks
-            .get(block + 1)
-            .map_or(self.cells.len(), |&(_, first)| first as usize)
+        self.blocks.get(block + 1).map_or(self.cells.len(), |&(_, first)| first as usize)
     }
 
     /// First particle of a cell; past the last cell, the number of particles.
@@ -400,7 +386,8 @@ impl<T: Real> Domain for Cells<T> {
         for i in 0..near.spans()[0].len() {
             let mut moved = 0.0;
             for (&now, &then) in self.positions.iter().zip(&self.sorted_at) {
-                let d = (near.state(now).own().whole()[i] - near.state(then).own().whole()[i]).as_f64();
+                let d =
+                    (near.state(now).own().whole()[i] - near.state(then).own().whole()[i]).as_f64();
                 moved += d * d;
             }
             // Not `moved > worst`: a NaN must not pass as small.
@@ -426,9 +413,7 @@ impl<T: Real> Domain for Cells<T> {
         let floats = [l.lower, l.side, l.period];
         let integers = [l.counts, l.reach, l.block];
         let floats = floats.iter().flatten().map(|x| x.to_bits());
-        floats
-            .chain(integers.iter().flatten().map(|&i| i as u64))
-            .collect()
+        floats.chain(integers.iter().flatten().map(|&i| i as u64)).collect()
     }
 
     fn restore(&mut self, saved: &[u64], columns: &Columns) -> Result<(), Fault> {
@@ -450,11 +435,9 @@ impl<T: Real> Domain for Cells<T> {
         // The particles are in order already, and their cells are those of the last sort.
         let at: Vec<&[T]> = self.sorted_at.iter().map(|&p| columns.values(p)).collect();
         let mut alone = Team::new(1).map_err(|e| Fault::new(e.to_string()))?;
-        let moved = self
-            .sorter
-            .sort(&mut alone, columns.points(), lattice.sort_keys(), |i| {
-                lattice.sort_key(lattice.coordinates(position(&at, i)))
-            });
+        let moved = self.sorter.sort(&mut alone, columns.points(), lattice.sort_keys(), |i| {
+            lattice.sort_key(lattice.coordinates(position(&at, i)))
+        });
         if moved {
             return Err(wrong());
         }

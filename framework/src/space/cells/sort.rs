@@ -45,10 +45,7 @@ impl Sorter {
                 order[i].store(i as u32, Relaxed);
             }
         });
-        if keys
-            .windows(2)
-            .all(|pair| pair[0].load(Relaxed) <= pair[1].load(Relaxed))
-        {
+        if keys.windows(2).all(|pair| pair[0].load(Relaxed) <= pair[1].load(Relaxed)) {
             return false;
         }
         let bits = u64::BITS - key_end.leading_zeros();

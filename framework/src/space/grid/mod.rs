@@ -175,18 +175,13 @@ impl Grid {
                 self.partition.push(spans, neighbours.iter().copied());
             }
         }
-        self.partition
-            .seal()
-            .expect("tiles cover the grid and see each other mutually");
+        self.partition.seal().expect("tiles cover the grid and see each other mutually");
     }
 
     /// Rows and planes of tile (tj, tk).
     fn extent(&self, tj: usize, tk: usize) -> [std::ops::Range<usize>; 2] {
         let cut = |t: usize, length: usize, n: usize| t * length..((t + 1) * length).min(n);
-        [
-            cut(tj, self.tile[0], self.shape[1]),
-            cut(tk, self.tile[1], self.shape[2]),
-        ]
+        [cut(tj, self.tile[0], self.shape[1]), cut(tk, self.tile[1], self.shape[2])]
     }
 
     /// The tile that owns row j of plane k.
@@ -216,12 +211,7 @@ impl Domain for Grid {
 
     fn sub_domain(&self, id: usize) -> Tile<'_> {
         let [rows, planes] = self.extent(id % self.tiles[0], id / self.tiles[0]);
-        Tile {
-            grid: self,
-            id,
-            rows,
-            planes,
-        }
+        Tile { grid: self, id, rows, planes }
     }
 }
 
@@ -238,9 +228,7 @@ impl<'a> Tile<'a> {
     /// Its rows as (j, k), in order of memory.
     pub fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<'a> {
         let rows = self.rows.clone();
-        self.planes
-            .clone()
-            .flat_map(move |k| rows.clone().map(move |j| (j, k)))
+        self.planes.clone().flat_map(move |k| rows.clone().map(move |j| (j, k)))
     }
 
     /// The grid.
@@ -261,10 +249,7 @@ mod tests {
 
     #[test]
     fn a_tile_sees_the_tiles_around_it() {
-        let grid = Grid::builder([4, 9, 9])
-            .periodic([true, true, false])
-            .tile(3, 3)
-            .build();
+        let grid = Grid::builder([4, 9, 9]).periodic([true, true, false]).tile(3, 3).build();
         assert_eq!(grid.partition().neighbours(4), [0, 1, 2, 3, 5, 6, 7, 8]);
         assert_eq!(grid.partition().neighbours(0), [1, 2, 3, 4, 5]);
     }

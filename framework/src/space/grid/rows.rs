@@ -18,8 +18,7 @@ impl<'a, T> Rows<'a, T> {
     /// If there is no such row, or it lies beyond the stencil's reach.
     #[inline]
     pub fn row(&self, j: isize, k: isize) -> &'a [T] {
-        self.get(j, k)
-            .unwrap_or_else(|| panic!("row ({j}, {k}) lies outside the grid"))
+        self.get(j, k).unwrap_or_else(|| panic!("row ({j}, {k}) lies outside the grid"))
     }
 
     /// As [`Rows::row`], but `None` past a bounded end.
@@ -33,10 +32,7 @@ impl<'a, T> Rows<'a, T> {
         let j = wrap(j, ny, grid.periodic[1])?;
         let k = wrap(k, nz, grid.periodic[2])?;
         let start = (k * ny + j) * nx;
-        let span = Span {
-            start,
-            end: start + nx,
-        };
+        let span = Span { start, end: start + nx };
         Some(self.column.at(self.near.reach(grid.owner(j, k), span)))
     }
 }
@@ -102,10 +98,7 @@ impl<'a> Near<'a, Grid> {
     /// # Panics
     /// As [`Near::state`].
     pub fn rows<T: Element>(&self, column: State<T>) -> Rows<'a, T> {
-        Rows {
-            near: *self,
-            column: self.state(column),
-        }
+        Rows { near: *self, column: self.state(column) }
     }
 
     /// Rows of a rate column that an earlier stage wrote.
@@ -113,10 +106,7 @@ impl<'a> Near<'a, Grid> {
     /// # Panics
     /// As [`Near::rate`].
     pub fn rate_rows<T: Element>(&self, column: Rate<T>) -> Rows<'a, T> {
-        Rows {
-            near: *self,
-            column: self.rate(column),
-        }
+        Rows { near: *self, column: self.rate(column) }
     }
 }
 
@@ -139,10 +129,7 @@ impl<'a> Own<'a, Grid> {
     /// # Panics
     /// As [`Own::state_mut`].
     pub fn rows_mut<T: Element>(&mut self, column: State<T>) -> RowsMut<'a, T> {
-        RowsMut {
-            tile: self.sub_domain(),
-            part: self.state_mut(column),
-        }
+        RowsMut { tile: self.sub_domain(), part: self.state_mut(column) }
     }
 
     /// The tile's own rows of a rate column.
@@ -150,9 +137,6 @@ impl<'a> Own<'a, Grid> {
     /// # Panics
     /// As [`Own::rate`].
     pub fn rate_rows<T: Element>(&mut self, column: Rate<T>) -> OwnRows<'a, T> {
-        OwnRows {
-            tile: self.sub_domain(),
-            part: self.rate(column),
-        }
+        OwnRows { tile: self.sub_domain(), part: self.rate(column) }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use finegrain_framework::real::Real;
+use finegrain_framework::Real;
 
 use super::profile::Profile;
 use crate::dimension::Dimension;
@@ -37,11 +37,7 @@ impl Profile for Gaussian {
 
     #[inline(always)]
     fn f<T: Real>(q: T) -> T {
-        if q < T::of(Self::SUPPORT) {
-            (-q * q).exp()
-        } else {
-            T::zero()
-        }
+        if q < T::of(Self::SUPPORT) { (-q * q).exp() } else { T::zero() }
     }
 
     #[inline(always)]

@@ -15,7 +15,7 @@ pub mod wendland;
 #[cfg(test)]
 mod tests;
 
-use finegrain_framework::real::Real;
+use finegrain_framework::Real;
 use serde::{Deserialize, Serialize};
 
 use crate::dimension::Dimension;

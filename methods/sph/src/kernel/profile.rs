@@ -1,6 +1,6 @@
 //! The radial profile of a smoothing kernel: what a file of this folder defines.
 
-use finegrain_framework::real::Real;
+use finegrain_framework::Real;
 
 use crate::dimension::Dimension;
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use finegrain_framework::real::Real;
+use finegrain_framework::Real;
 
 use super::profile::{Profile, positive_part};
 use crate::dimension::Dimension;

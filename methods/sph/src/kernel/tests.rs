@@ -7,13 +7,8 @@ use crate::dimension::Dimension::{self, One, Three, Two};
 use crate::packing::Packing;
 use SmoothingFunction::{CubicSpline, Gaussian, QuarticSpline, QuinticSpline, WendlandC2};
 
-const FUNCTIONS: [SmoothingFunction; 5] = [
-    Gaussian,
-    CubicSpline,
-    QuarticSpline,
-    QuinticSpline,
-    WendlandC2,
-];
+const FUNCTIONS: [SmoothingFunction; 5] =
+    [Gaussian, CubicSpline, QuarticSpline, QuinticSpline, WendlandC2];
 const DIMENSIONS: [Dimension; 3] = [One, Two, Three];
 
 /// Every kernel in every dimension, with a smoothing length other than one.
@@ -68,11 +63,7 @@ fn integral_over_space_is_one() {
             (Gaussian, Three) => 1.0 - ERF_3 + 6.0 * (-9.0_f64).exp() / PI.sqrt(),
             _ => 0.0,
         };
-        assert_relative_eq!(
-            integral(&kernel, function, dimension),
-            1.0 - missing,
-            epsilon = 1e-11
-        );
+        assert_relative_eq!(integral(&kernel, function, dimension), 1.0 - missing, epsilon = 1e-11);
     }
 }
 
@@ -86,11 +77,7 @@ fn gaussian_is_the_papers_equation_7() {
     ] {
         let kernel = Kernel::new(Gaussian, dimension, h);
         assert_eq!(kernel.support_radius(), 3.0 * h);
-        assert_relative_eq!(
-            kernel.w(1.3),
-            alpha * f64::exp(-1.3 * 1.3),
-            max_relative = 1e-14
-        );
+        assert_relative_eq!(kernel.w(1.3), alpha * f64::exp(-1.3 * 1.3), max_relative = 1e-14);
     }
 }
 
@@ -126,10 +113,7 @@ fn profile_falls_steadily_and_smoothly_to_the_edge() {
             assert!(next < here && next > 0.0, "{function:?} at {q}");
             assert!(here - next < 2.0 * STEP * top, "{function:?} at {q}");
             let (here, next) = (kernel.dw_dq(q), kernel.dw_dq(q + STEP));
-            assert!(
-                (here - next).abs() < 6.0 * STEP * top,
-                "{function:?} at {q}"
-            );
+            assert!((here - next).abs() < 6.0 * STEP * top, "{function:?} at {q}");
             q += STEP;
         }
         let edge = function.support();
@@ -193,8 +177,7 @@ impl pulp::WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.kernel
-            .evaluate(self.distance_squared, self.w, self.gradient_factor);
+        self.kernel.evaluate(self.distance_squared, self.w, self.gradient_factor);
     }
 }
 
@@ -223,12 +206,9 @@ fn lanes_have_the_same_bits_in_every_instruction_set() {
 #[test]
 fn sums_over_a_lattice_are_consistent() {
     let (spacing, h) = (0.1, 0.16);
-    for packing in [
-        Packing::Square,
-        Packing::Hexagonal,
-        Packing::Cubic,
-        Packing::HexagonalClosePacked,
-    ] {
+    for packing in
+        [Packing::Square, Packing::Hexagonal, Packing::Cubic, Packing::HexagonalClosePacked]
+    {
         let lattice = packing.fit([1.0; 3], spacing).unwrap();
         let lengths = lattice.lengths();
         let volume = lattice.volume_per_particle();
@@ -239,18 +219,12 @@ fn sums_over_a_lattice_are_consistent() {
             .map(|there| {
                 [0, 1, 2].map(|k| {
                     let x = here[k] - there[k];
-                    if lengths[k] > 0.0 {
-                        x - lengths[k] * (x / lengths[k]).round()
-                    } else {
-                        x
-                    }
+                    if lengths[k] > 0.0 { x - lengths[k] * (x / lengths[k]).round() } else { x }
                 })
             })
             .collect();
-        let distance_squared: Vec<f64> = offsets
-            .iter()
-            .map(|x| x.iter().map(|c| c * c).sum())
-            .collect();
+        let distance_squared: Vec<f64> =
+            offsets.iter().map(|x| x.iter().map(|c| c * c).sum()).collect();
         for function in FUNCTIONS {
             let dimension = packing.dimension();
             let kernel = Kernel::new(function, dimension, h);
@@ -286,10 +260,7 @@ fn single_precision_agrees_with_double() {
             let factor_error =
                 (f64::from(factor_single[lane]) - factor[lane]).abs() / factor[0].abs();
             assert!(w_error < 2e-6, "{function:?}: W is off by {w_error:e}");
-            assert!(
-                factor_error < 2e-6,
-                "{function:?}: F is off by {factor_error:e}"
-            );
+            assert!(factor_error < 2e-6, "{function:?}: F is off by {factor_error:e}");
         }
     }
 }

@@ -2,12 +2,8 @@ use approx::assert_relative_eq;
 
 use super::{Lattice, Packing, PackingError, wrap};
 
-const PACKINGS: [Packing; 4] = [
-    Packing::Square,
-    Packing::Hexagonal,
-    Packing::Cubic,
-    Packing::HexagonalClosePacked,
-];
+const PACKINGS: [Packing; 4] =
+    [Packing::Square, Packing::Hexagonal, Packing::Cubic, Packing::HexagonalClosePacked];
 
 /// Distances from a particle to all others and to all images next to the box, up to `reach`.
 fn distances(lattice: &Lattice, x: [f64; 3], reach: f64) -> Vec<f64> {
@@ -19,9 +15,8 @@ fn distances(lattice: &Lattice, x: [f64; 3], reach: f64) -> Vec<f64> {
             for j in -1..=1 {
                 for i in -1..=1 {
                     let shift = [i, j, k].map(f64::from);
-                    let r2: f64 = (0..3)
-                        .map(|k| (x[k] - y[k] - shift[k] * lengths[k]).powi(2))
-                        .sum();
+                    let r2: f64 =
+                        (0..3).map(|k| (x[k] - y[k] - shift[k] * lengths[k]).powi(2)).sum();
                     if r2.sqrt() < reach {
                         distances.push(r2.sqrt());
                     }
@@ -54,9 +49,7 @@ fn every_particle_has_all_nearest_neighbours_at_the_spacing() {
 
 #[test]
 fn close_packing_has_the_shells_of_hcp() {
-    let lattice = Packing::HexagonalClosePacked
-        .fit([6.0, 6.0, 6.0], 1.0)
-        .unwrap();
+    let lattice = Packing::HexagonalClosePacked.fit([6.0, 6.0, 6.0], 1.0).unwrap();
     let x = lattice.positions().next().unwrap();
     // Neighbours by distance squared: 12 at 1, 6 at 2, 2 at 8/3, 18 at 3, 12 at 11/3; cubic
     // close packing has none at 8/3.
@@ -68,13 +61,7 @@ fn close_packing_has_the_shells_of_hcp() {
             _ => shells.push((r2, 1)),
         }
     }
-    let expected = [
-        (1.0, 12),
-        (2.0, 6),
-        (8.0 / 3.0, 2),
-        (3.0, 18),
-        (11.0 / 3.0, 12),
-    ];
+    let expected = [(1.0, 12), (2.0, 6), (8.0 / 3.0, 2), (3.0, 18), (11.0 / 3.0, 12)];
     assert_eq!(shells.len(), expected.len());
     for (found, expected) in shells.into_iter().zip(expected) {
         assert_relative_eq!(found.0, expected.0, max_relative = 1e-12);
@@ -144,9 +131,7 @@ fn box_moves_by_half_a_cell_at_most() {
 fn papers_boxes_hold_about_as_many_particles_as_its_table_1() {
     for thousandths in 1..=7 {
         let width = 0.001 * f64::from(thousandths);
-        let lattice = Packing::HexagonalClosePacked
-            .fit([0.025, 0.025, width], 0.0002)
-            .unwrap();
+        let lattice = Packing::HexagonalClosePacked.fit([0.025, 0.025, width], 0.0002).unwrap();
         let published = 1e5 * f64::from(thousandths);
         assert_relative_eq!(lattice.count() as f64, published, max_relative = 0.1);
     }
@@ -160,10 +145,7 @@ fn displacements_stay_within_their_reach_and_the_box() {
         let lengths = lattice.lengths();
         let dimension = packing.dimension().number();
         let (mut sum, mut sum_of_squares) = (0.0, 0.0);
-        for (x, moved) in lattice
-            .positions()
-            .zip(lattice.displaced_positions(fraction, 7))
-        {
+        for (x, moved) in lattice.positions().zip(lattice.displaced_positions(fraction, 7)) {
             assert_eq!(x[dimension..], moved[dimension..]);
             for k in 0..dimension {
                 assert!((0.0..lengths[k]).contains(&moved[k]));
@@ -194,9 +176,7 @@ fn displacements_follow_the_published_generator() {
     ];
     let lattice = Packing::Square.fit([4.0, 4.0, 0.0], 1.0).unwrap();
     let fraction = 0.25;
-    let positions = lattice
-        .positions()
-        .zip(lattice.displaced_positions(fraction, 42));
+    let positions = lattice.positions().zip(lattice.displaced_positions(fraction, 42));
     for ((x, moved), outputs) in positions.zip(OUTPUTS.chunks(2)) {
         for k in 0..2 {
             let even = (outputs[k] >> 11) as f64 / 2.0_f64.powi(53);
