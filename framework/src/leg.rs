@@ -274,7 +274,7 @@ impl<D: Domain> Work for Leg<'_, D> {
                 return fail(self.step.stages[stage].name(), cause);
             }
         }
-        let is_checked = self.check_every.is_some_and(|n| (step + 1) % n == 0);
+        let is_checked = self.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
         if is_checked
             && part + 1 == self.parts()
             && let Err(cause) = self.check_finite(step, sub_domain)

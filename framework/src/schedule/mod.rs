@@ -73,10 +73,10 @@ pub(crate) struct Executor {
 
 enum Protocol {
     Serial,
-    Lockstep(lockstep::Lockstep),
-    PeerToPeer(peer_to_peer::PeerToPeer),
+    Lockstep(Box<lockstep::Lockstep>),
+    PeerToPeer(Box<peer_to_peer::PeerToPeer>),
     ForkJoin(fork_join::ForkJoin),
-    Fixed(fixed::Fixed),
+    Fixed(Box<fixed::Fixed>),
 }
 
 impl Executor {
@@ -88,10 +88,12 @@ impl Executor {
         };
         let protocol = match schedule {
             Schedule::Serial => Protocol::Serial,
-            Schedule::Lockstep => Protocol::Lockstep(lockstep::Lockstep::new(workers)),
-            Schedule::PeerToPeer => Protocol::PeerToPeer(peer_to_peer::PeerToPeer::new(workers)),
+            Schedule::Lockstep => Protocol::Lockstep(lockstep::Lockstep::new(workers).into()),
+            Schedule::PeerToPeer => {
+                Protocol::PeerToPeer(peer_to_peer::PeerToPeer::new(workers).into())
+            }
             Schedule::ForkJoin => Protocol::ForkJoin(fork_join::ForkJoin::new(workers)?),
-            Schedule::Fixed => Protocol::Fixed(fixed::Fixed::new(workers)),
+            Schedule::Fixed => Protocol::Fixed(fixed::Fixed::new(workers).into()),
         };
         Ok(Self { schedule, hand_out, team: Team::new(workers)?, protocol })
     }

@@ -303,8 +303,8 @@ impl<T: Real> Cells<T> {
         self.partition.clear(points);
         for (id, &(key, _)) in self.blocks.iter().enumerate() {
             let at = lattice.block_at(key);
-            for a in 0..3 {
-                lattice.near_blocks(a, at[a], &mut self.near_axes[a]);
+            for (a, near) in self.near_axes.iter_mut().enumerate() {
+                lattice.near_blocks(a, at[a], near);
             }
             self.near_blocks.clear();
             let [xs, ys, zs] = &self.near_axes;
@@ -390,8 +390,7 @@ impl<T: Real> Domain for Cells<T> {
                     (near.state(now).own().whole()[i] - near.state(then).own().whole()[i]).as_f64();
                 moved += d * d;
             }
-            // Not `moved > worst`: a NaN must not pass as small.
-            if !(moved <= worst.0) {
+            if moved > worst.0 || moved.is_nan() {
                 worst = (moved, i);
             }
         }
