@@ -5,6 +5,7 @@ mod columns;
 pub mod dispatch;
 mod domain;
 pub mod integrator;
+pub mod lanes;
 mod leg;
 mod real;
 mod schedule;

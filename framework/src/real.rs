@@ -13,6 +13,7 @@ use num_traits::{Float, FromPrimitive, NumAssign};
 /// and an exponential that compiles to full-width lanes.
 pub trait Real:
     crate::columns::Element
+    + crate::lanes::Lanes
     + Float
     + FromPrimitive
     + NumAssign

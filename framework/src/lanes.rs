@@ -1,0 +1,192 @@
+//! Lanes that need more than the compiler finds by itself: selecting the points within a radius,
+//! and gathering their values into contiguous blocks.
+//!
+//! One of the few modules with `unsafe`, so that methods need none: the instruction set is chosen
+//! at run time and every call is safe. All instruction sets give the same bits.
+
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+
+/// Points that [`Lanes::within`] has found, by index into the slices it searched.
+#[derive(Clone, Debug, Default)]
+pub struct Found {
+    /// The first `count` are found; beyond them there is room to write whole lanes.
+    indices: Vec<u32>,
+    count: usize,
+    /// Length of the slices searched: every found index is below it.
+    searched: usize,
+}
+
+impl Found {
+    /// Number of points found.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether none was found.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Their indices, ascending.
+    pub fn indices(&self) -> &[u32] {
+        &self.indices[..self.count]
+    }
+
+    /// Makes room for a search among `points` points.
+    fn prepare(&mut self, points: usize) {
+        const MOST_LANES: usize = 16;
+        assert!(i32::try_from(points).is_ok(), "more points than an i32 counts");
+        if self.indices.len() < points + MOST_LANES {
+            self.indices.resize(points + MOST_LANES, 0);
+        }
+        self.count = 0;
+        self.searched = points;
+    }
+}
+
+/// Lane operations on a scalar type.
+pub trait Lanes: Copy + Sized {
+    /// Finds the points nearer to `centre` than the root of `radius_squared`.
+    ///
+    /// # Panics
+    /// If the coordinate slices differ in length.
+    fn within<const D: usize>(
+        points: [&[Self]; D],
+        centre: [Self; D],
+        radius_squared: Self,
+        found: &mut Found,
+    );
+
+    /// Writes the found points' values from `from` to the beginning of `to`.
+    ///
+    /// # Panics
+    /// If `from` is shorter than the slices that were searched, or `to` than what was found.
+    fn gather(from: &[Self], found: &Found, to: &mut [Self]);
+}
+
+macro_rules! lanes {
+    ($scalar:ty, $within:ident, $gather:ident) => {
+        impl Lanes for $scalar {
+            #[inline]
+            fn within<const D: usize>(
+                points: [&[Self]; D],
+                centre: [Self; D],
+                radius_squared: Self,
+                found: &mut Found,
+            ) {
+                let n = points.first().map_or(0, |x| x.len());
+                assert!(points.iter().all(|x| x.len() == n), "coordinates of different lengths");
+                found.prepare(n);
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: the instruction set is there; the slices have length n and the
+                    // indices room for n and one vector more (`prepare`).
+                    return unsafe { avx512::$within(points, centre, radius_squared, found) };
+                }
+                search(points, centre, radius_squared, found, 0);
+            }
+
+            #[inline]
+            fn gather(from: &[Self], found: &Found, to: &mut [Self]) {
+                assert!(from.len() >= found.searched, "fewer values than points searched");
+                let to = &mut to[..found.count];
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: the instruction set is there; every found index is below
+                    // `searched` and so inside `from`; `to` has as many elements as were found.
+                    return unsafe { avx512::$gather(from, found.indices(), to) };
+                }
+                for (to, &i) in to.iter_mut().zip(found.indices()) {
+                    *to = from[i as usize];
+                }
+            }
+        }
+    };
+}
+lanes!(f64, within_f64, gather_f64);
+lanes!(f32, within_f32, gather_f32);
+
+/// Searches `first..` one point at a time, without branches.
+#[inline]
+fn search<T: num_traits::Float, const D: usize>(
+    points: [&[T]; D],
+    centre: [T; D],
+    radius_squared: T,
+    found: &mut Found,
+    first: usize,
+) {
+    let Found { indices, count, searched } = found;
+    for j in first..*searched {
+        let mut distance_squared = T::zero();
+        for a in 0..D {
+            let d = points[a][j] - centre[a];
+            distance_squared = d.mul_add(d, distance_squared);
+        }
+        indices[*count] = j as u32;
+        *count += usize::from(distance_squared < radius_squared);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::Real;
+
+    /// Points on a spiral, so that every distance differs.
+    fn points<T: Real>(n: usize) -> [Vec<T>; 3] {
+        let along = |f: fn(f64) -> f64| {
+            (0..n).map(|i| T::of(f(i as f64 * 0.7) * (0.1 + i as f64 / n as f64))).collect()
+        };
+        [along(f64::sin), along(f64::cos), along(|t| (0.3 * t).sin())]
+    }
+
+    fn agrees_with_the_definition<T: Real>() {
+        let mut found = Found::default();
+        for n in [0, 1, 7, 8, 9, 15, 16, 17, 100, 1031] {
+            let [x, y, z] = points::<T>(n);
+            let centre = [T::of(0.1), T::of(-0.2), T::of(0.05)];
+            let radius_squared = T::of(0.4);
+            T::within([&x, &y, &z], centre, radius_squared, &mut found);
+            let expected: Vec<u32> = (0..n)
+                .filter(|&j| {
+                    let [dx, dy, dz] = [x[j] - centre[0], y[j] - centre[1], z[j] - centre[2]];
+                    dz.mul_add(dz, dy.mul_add(dy, dx * dx)) < radius_squared
+                })
+                .map(|j| j as u32)
+                .collect();
+            assert_eq!(found.indices(), expected, "{n} points");
+            let mut gathered = vec![T::nan(); found.len() + 3];
+            T::gather(&y, &found, &mut gathered);
+            for (k, &j) in expected.iter().enumerate() {
+                assert_eq!(gathered[k], y[j as usize]);
+            }
+            assert!(gathered[found.len()..].iter().all(|g| g.is_nan()));
+        }
+    }
+
+    #[test]
+    fn f64_agrees_with_the_definition() {
+        agrees_with_the_definition::<f64>();
+    }
+
+    #[test]
+    fn f32_agrees_with_the_definition() {
+        agrees_with_the_definition::<f32>();
+    }
+
+    #[test]
+    fn a_point_that_is_nowhere_is_not_found() {
+        let mut found = Found::default();
+        f64::within([&[0.0, f64::NAN, 1.0]], [0.0], 0.5, &mut found);
+        assert_eq!(found.indices(), [0]);
+    }
+
+    #[test]
+    #[should_panic(expected = "fewer values")]
+    fn values_of_fewer_points_are_refused() {
+        let mut found = Found::default();
+        f64::within([&[0.0; 20]], [0.0], 1.0, &mut found);
+        f64::gather(&[1.0; 19], &found, &mut [0.0; 20]);
+    }
+}
