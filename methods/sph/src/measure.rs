@@ -1,0 +1,73 @@
+//! Scalar quantities of the flow, as deterministic reductions.
+
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Real, Whole};
+
+use crate::fields::Fields;
+
+/// Integrals over the fluid, without the particles that fill bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Totals {
+    /// Volume, m^3 (m^2 in 2-D).
+    pub volume: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Integral of the velocity over the volume, m^4/s (m^3/s in 2-D).
+    pub flow: [f64; 3],
+    /// Momentum, kg m/s.
+    pub momentum: [f64; 3],
+    /// Kinetic energy, J.
+    pub kinetic_energy: f64,
+}
+
+/// Sums up the fluid.
+pub fn totals<T: Real>(
+    whole: &mut Whole<'_, Cells<T>>,
+    fields: &Fields<T>,
+    particle_mass: f64,
+) -> Totals {
+    let sums = whole.sum(|near| {
+        let density = near.state(fields.density).own().whole();
+        let depth = fields.wall_depth.map(|d| near.state(d).own().whole());
+        let mut sums = [0.0; 9];
+        for i in 0..density.len() {
+            if depth.is_some_and(|d| d[i] > T::zero()) {
+                continue;
+            }
+            let volume = particle_mass / density[i].as_f64();
+            sums[0] += volume;
+            sums[1] += particle_mass;
+            for (a, &v) in fields.velocity.iter().enumerate() {
+                let v = near.state(v).own().whole()[i].as_f64();
+                sums[2 + a] += volume * v;
+                sums[5 + a] += particle_mass * v;
+                sums[8] += 0.5 * particle_mass * v * v;
+            }
+        }
+        sums
+    });
+    Totals {
+        volume: sums[0],
+        mass: sums[1],
+        flow: [sums[2], sums[3], sums[4]],
+        momentum: [sums[5], sums[6], sums[7]],
+        kinetic_energy: sums[8],
+    }
+}
+
+/// Largest speed of any particle, m/s.
+pub fn largest_speed<T: Real>(whole: &mut Whole<'_, Cells<T>>, fields: &Fields<T>) -> f64 {
+    let [squared] = whole.max(|near| {
+        let mut most = 0.0f64;
+        for i in 0..near.spans()[0].len() {
+            let squared: f64 = fields
+                .velocity
+                .iter()
+                .map(|&v| near.state(v).own().whole()[i].as_f64().powi(2))
+                .sum();
+            most = if squared > most || squared.is_nan() { squared } else { most };
+        }
+        [most]
+    });
+    squared.sqrt()
+}

@@ -1,0 +1,80 @@
+//! Whole-domain work of SPH: sorting particles into cells, and time step control.
+
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Fault, Pace, Pacing, Real, Whole, WholeStage};
+
+use crate::fields::Fields;
+
+/// Sorts particles into cells at the beginning of every pace.
+pub(crate) struct Sort;
+
+impl<T: Real> WholeStage<Cells<T>> for Sort {
+    fn name(&self) -> &str {
+        "sort into cells"
+    }
+
+    fn run(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<(), Fault> {
+        whole.domain.sort(whole.columns, whole.team)
+    }
+}
+
+/// Time step from sound speed, viscosity and acceleration, and the number of steps that particles
+/// surely stay within the skin.
+#[derive(Clone, Debug)]
+pub(crate) struct TimeStepControl<T> {
+    pub fields: Fields<T>,
+    /// Smoothing length, m.
+    pub smoothing_length: f64,
+    /// Sound speed, m/s.
+    pub sound_speed: f64,
+    /// Kinematic viscosity, m^2/s; 0 without.
+    pub kinematic_viscosity: f64,
+    /// Magnitude of the body acceleration, m/s^2.
+    pub body_acceleration: f64,
+    /// Fraction of each limit that is used.
+    pub courant_number: f64,
+    /// Most steps before particles are sorted and the time step is looked at again.
+    pub most_steps: u64,
+}
+
+impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
+    /// `dt = C min(0.25 h / (c + v_max), 0.125 h^2 / nu, 0.25 sqrt(h / a_max))` (Morris, Fox & Zhu
+    /// 1997, eqs. 29 to 31, with the speed added to that of sound).
+    fn pace(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<Pace, Fault> {
+        let fields = &self.fields;
+        let [v2_max, a2_max] = whole.max(|near| {
+            let mut most = [0.0f64; 2];
+            for i in 0..near.spans()[0].len() {
+                let mut squared = [0.0f64; 2];
+                for (&v, &a) in fields.velocity.iter().zip(&fields.acceleration) {
+                    squared[0] += near.state(v).own().whole()[i].as_f64().powi(2);
+                    squared[1] += near.rate(a).own().whole()[i].as_f64().powi(2);
+                }
+                for (most, x) in most.iter_mut().zip(squared) {
+                    *most = if x > *most || x.is_nan() { x } else { *most };
+                }
+            }
+            most
+        });
+        let (speed, acceleration) = (v2_max.sqrt(), a2_max.sqrt().max(self.body_acceleration));
+        let h = self.smoothing_length;
+        let sound_limit = 0.25 * h / (self.sound_speed + speed);
+        let viscous_limit = 0.125 * h * h / self.kinematic_viscosity;
+        let force_limit = 0.25 * (h / acceleration).sqrt();
+        let dt = self.courant_number * sound_limit.min(viscous_limit).min(force_limit);
+        if !(speed.is_finite() && acceleration.is_finite()) {
+            return Err(Fault::new(format!(
+                "largest speed {speed} m/s and acceleration {acceleration} m/s^2 must be finite"
+            )));
+        }
+        // A particle moves by at most n dt v + (n dt)^2 a in n steps, a factor of two allowed for
+        // accelerations that grow meanwhile.
+        let slack = 0.8 * whole.domain.slack();
+        let reach = |n: f64| n * dt * speed + (n * dt).powi(2) * acceleration;
+        let mut steps = 1;
+        while steps < self.most_steps && reach((steps + 1) as f64) < slack {
+            steps += 1;
+        }
+        Ok(Pace { dt, steps })
+    }
+}

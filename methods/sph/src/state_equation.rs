@@ -1,0 +1,80 @@
+//! Equations of state: pressure from density.
+
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Fault, Moment, Own, Real, UpdateStage};
+use serde::{Deserialize, Serialize};
+
+use crate::fields::Fields;
+
+/// Pressure as a function of density.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", tag = "kind", deny_unknown_fields)]
+pub enum StateEquation {
+    /// `p = c^2 (rho - rho_0) + p_b` (Morris, Fox & Zhu 1997 take `p_b = c^2 rho_0`).
+    Linear {
+        /// Background pressure `p_b` in units of `c^2 rho_0`.
+        background: f64,
+    },
+    /// `p = c^2 rho_0 / gamma ((rho / rho_0)^gamma - 1) + p_b` (Monaghan 1994, with gamma = 7 for
+    /// water).
+    Tait {
+        /// Exponent gamma.
+        exponent: f64,
+        /// Background pressure `p_b` in units of `c^2 rho_0`.
+        background: f64,
+    },
+}
+
+impl StateEquation {
+    /// Pressure, Pa, at `density`, for a fluid with reference density and sound speed.
+    #[inline(always)]
+    pub fn pressure<T: Real>(&self, density: T, reference_density: T, sound_speed: T) -> T {
+        let stiffness = sound_speed * sound_speed * reference_density;
+        let ratio = density / reference_density;
+        match *self {
+            Self::Linear { background } => stiffness * (ratio - T::one() + T::of(background)),
+            Self::Tait { exponent, background } => {
+                let gamma = T::of(exponent);
+                stiffness * ((ratio.powf(gamma) - T::one()) / gamma + T::of(background))
+            }
+        }
+    }
+}
+
+/// The update that begins an evaluation: volume and `p / rho^2` from density.
+#[derive(Clone, Debug)]
+pub(crate) struct Thermodynamics<T> {
+    pub fields: Fields<T>,
+    pub equation: StateEquation,
+    pub particle_mass: T,
+    pub reference_density: T,
+    pub sound_speed: T,
+}
+
+impl<T: Real> UpdateStage<Cells<T>> for Thermodynamics<T> {
+    type Scratch = ();
+
+    fn name(&self) -> &str {
+        "equation of state"
+    }
+
+    fn update(&self, own: &mut Own<'_, Cells<T>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
+        let density = own.state(self.fields.density).whole();
+        let volume = own.state_mut(self.fields.volume).whole();
+        let pressure_term = own.state_mut(self.fields.pressure_term).whole();
+        for ((&density, volume), pressure_term) in density.iter().zip(volume).zip(pressure_term) {
+            let pressure =
+                self.equation.pressure(density, self.reference_density, self.sound_speed);
+            *volume = self.particle_mass / density;
+            *pressure_term = pressure / (density * density);
+        }
+        match density.iter().position(|&rho| rho <= T::zero()) {
+            None => Ok(()),
+            Some(i) => Err(Fault::new(format!(
+                "particle {} has density {}; it must be positive",
+                own.spans()[0].start + i,
+                density[i]
+            ))),
+        }
+    }
+}

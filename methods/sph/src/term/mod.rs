@@ -1,0 +1,100 @@
+//! Terms: one piece of physics each, composed by a scene.
+//!
+//! A term is a sum over the neighbours of a particle. It reads gathered lanes and returns its
+//! contribution; the files read like their equations.
+
+pub(crate) mod continuity;
+pub(crate) mod energy;
+pub(crate) mod momentum;
+pub(crate) mod strain_rate;
+pub(crate) mod viscosity;
+
+use finegrain_framework::Real;
+use serde::{Deserialize, Serialize};
+
+use crate::neighbourhood::{LANES, Quantity};
+
+/// Viscous term of the momentum equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Viscosity {
+    /// Strain-rate form of Holmes et al. (2011), eq. I.2: two rate stages, one for the
+    /// strain-rate tensor of every particle and one for its divergence.
+    StrainRate,
+    /// Morris, Fox & Zhu (1997), eq. 22: one rate stage, second derivative by difference of a
+    /// first derivative.
+    Morris,
+}
+
+/// One term of a model, with its constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Term<T> {
+    /// Conservation of mass, eq. I.1.
+    Continuity,
+    /// Strain-rate tensor, for the strain-rate forms of viscosity and heating.
+    StrainRate(strain_rate::StrainRate<T>),
+    /// Pressure gradient of eq. I.2.
+    PressureGradient,
+    /// Divergence of the viscous stress of eq. I.2.
+    StressDivergence,
+    /// Viscosity of Morris et al.
+    MorrisViscosity(viscosity::Morris<T>),
+    /// Conservation of energy, eq. I.3.
+    Energy(energy::Energy<T>),
+}
+
+impl<T: Real> Term<T> {
+    /// The quantities of neighbours that it reads.
+    pub fn reads(&self, dims: usize) -> Vec<Quantity> {
+        let velocity = (0..dims).map(Quantity::Velocity);
+        let stress = (0..crate::fields::symmetric(dims)).map(Quantity::StressTerm);
+        match self {
+            Self::Continuity => velocity.collect(),
+            Self::StrainRate(_) | Self::MorrisViscosity(_) => {
+                velocity.chain([Quantity::Volume, Quantity::WallDepth]).collect()
+            }
+            Self::PressureGradient => vec![Quantity::PressureTerm],
+            Self::StressDivergence => stress.chain([Quantity::WallDepth]).collect(),
+            Self::Energy(_) => {
+                velocity.chain(stress).chain([Quantity::Volume, Quantity::PressureTerm]).collect()
+            }
+        }
+    }
+
+    /// Whether it needs what another term's rate stage computes for the neighbours.
+    pub fn is_second(&self) -> bool {
+        matches!(self, Self::StressDivergence | Self::Energy(_))
+    }
+}
+
+/// A sum over neighbours, one partial sum a lane: the order of additions does not depend on the
+/// instruction set.
+#[derive(Clone, Copy)]
+pub(crate) struct LaneSum<T>([T; LANES]);
+
+impl<T: Real> LaneSum<T> {
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self([T::zero(); LANES])
+    }
+
+    /// Adds `a * b` to lane `l`.
+    #[inline(always)]
+    pub fn add(&mut self, l: usize, a: T, b: T) {
+        self.0[l] = a.mul_add(b, self.0[l]);
+    }
+
+    /// The sum of all lanes, by halves.
+    #[inline(always)]
+    pub fn total(self) -> T {
+        let mut sums = self.0;
+        let mut half = LANES / 2;
+        while half > 0 {
+            for l in 0..half {
+                sums[l] += sums[l + half];
+            }
+            half /= 2;
+        }
+        sums[0]
+    }
+}

@@ -1,0 +1,64 @@
+//! Bodies and the no-slip condition on them.
+//!
+//! A body is filled with virtual particles that do not move and take part in the sums (Monaghan
+//! 1994). For the viscous terms they are given the velocity that a linear profile through zero at
+//! the surface has where they are (Morris, Fox & Zhu 1997, section 3.4).
+
+use finegrain_framework::shape::Shape;
+use finegrain_framework::space::cells::Region;
+
+/// The surfaces of all bodies of a scene, with the periodic images that can be seen.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Walls {
+    bodies: Vec<(Shape, [f64; 3])>,
+}
+
+impl Walls {
+    /// Bodies in a region; images further than `range` from all of the region are left out.
+    pub fn new(shapes: &[Shape], region: &Region, range: f64) -> Self {
+        let dims = region.lower.len();
+        let length = |a: usize| region.upper[a] - region.lower[a];
+        let images = |a: usize| if a < dims && region.periodic[a] { -1..=1 } else { 0..=0 };
+        let centre: [f64; 3] = std::array::from_fn(|a| {
+            if a < dims { 0.5 * (region.lower[a] + region.upper[a]) } else { 0.0 }
+        });
+        let half_diagonal = 0.5 * (0..dims).map(|a| length(a).powi(2)).sum::<f64>().sqrt();
+        let mut bodies = Vec::new();
+        for shape in shapes {
+            for k in images(2) {
+                for j in images(1) {
+                    for i in images(0) {
+                        let mut shift = [0.0; 3];
+                        for (a, n) in [i, j, k].into_iter().enumerate().take(dims) {
+                            shift[a] = f64::from(n) * length(a);
+                        }
+                        let seen = std::array::from_fn(|a| centre[a] + shift[a]);
+                        if shape.signed_distance(seen) < half_diagonal + range {
+                            bodies.push((shape.clone(), shift));
+                        }
+                    }
+                }
+            }
+        }
+        Self { bodies }
+    }
+
+    /// Distance to the nearest surface, m; negative inside a body.
+    pub fn signed_distance(&self, x: [f64; 3]) -> f64 {
+        self.bodies
+            .iter()
+            .map(|(shape, shift)| shape.signed_distance(std::array::from_fn(|a| x[a] + shift[a])))
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// No-slip condition: how much of the velocity difference to a wall particle is added to it.
+#[derive(Clone, Debug)]
+pub(crate) struct NoSlip<T> {
+    pub walls: Walls,
+    /// Largest extrapolation, `beta_max - 1` in Morris et al. (1997): a fluid particle very near
+    /// the surface would otherwise see wall particles at any velocity.
+    pub most: T,
+    /// No fluid particle counts as nearer to the surface than this, m.
+    pub least_distance: T,
+}
