@@ -57,7 +57,7 @@ mod join;
 mod multiple;
 mod receive;
 
-pub use arbiter::Arbiter;
+pub use arbiter::{Arbiter, Outcome};
 pub use choice::Choice;
 pub use ends::{Inbox, Port, PostError};
 pub use failure::Failure;
