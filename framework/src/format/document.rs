@@ -129,9 +129,14 @@ impl<'a> Document<'a> {
     /// Appends a block of numbers which VTK calls `kind`; `name` is free of special characters.
     pub(super) fn block(&mut self, kind: &str, name: &str, components: usize, block: Block<'a>) {
         let offset = self.offset;
+        // Said of vectors only: some readers make a table of one column of what says 1.
+        let width = match components {
+            1 => String::new(),
+            _ => format!("NumberOfComponents=\"{components}\" "),
+        };
         self.line(&format!(
-            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-             format=\"appended\" offset=\"{offset}\"/>"
+            "<DataArray type=\"{kind}\" Name=\"{name}\" {width}format=\"appended\" \
+             offset=\"{offset}\"/>"
         ));
         self.offset += size_of::<u64>() as u64 + block.bytes();
         self.blocks.push(block);

@@ -55,7 +55,7 @@ pub fn read(file: &[u8]) -> (String, BTreeMap<String, ReadArray>) {
         end = offset + 8 + length;
         let array = ReadArray {
             kind: attribute(tag, "type"),
-            components: attribute(tag, "NumberOfComponents").parse().unwrap(),
+            components: find(tag, "NumberOfComponents").map_or(1, |n| n.parse().unwrap()),
             bytes: raw[offset + 8..end].to_vec(),
         };
         assert!(arrays.insert(attribute(tag, "Name"), array).is_none());
@@ -64,14 +64,15 @@ pub fn read(file: &[u8]) -> (String, BTreeMap<String, ReadArray>) {
     (xml, arrays)
 }
 
-/// The unescaped value of an attribute of a tag.
+/// The unescaped value of an attribute that a tag must have.
 pub fn attribute(tag: &str, key: &str) -> String {
-    let (_, rest) = tag.split_once(&format!(" {key}=\"")).unwrap();
-    let (value, _) = rest.split_once('"').unwrap();
-    value
-        .replace("&lt;", "<")
-        .replace("&gt;", ">")
-        .replace("&quot;", "\"")
-        .replace("&apos;", "'")
-        .replace("&amp;", "&")
+    find(tag, key).unwrap_or_else(|| panic!("no {key} in {tag}"))
+}
+
+fn find(tag: &str, key: &str) -> Option<String> {
+    let (_, rest) = tag.split_once(&format!(" {key}=\""))?;
+    let (value, _) = rest.split_once('"')?;
+    let value = value.replace("&lt;", "<").replace("&gt;", ">");
+    let value = value.replace("&quot;", "\"").replace("&apos;", "'");
+    Some(value.replace("&amp;", "&"))
 }
