@@ -115,3 +115,27 @@ fn sync_folder(file: &Path) -> io::Result<()> {
 fn sync_folder(_file: &Path) -> io::Result<()> {
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A disk that is full for a moment must not leave a file with a hole in it.
+    #[test]
+    fn a_file_that_missed_a_write_is_never_committed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result");
+        fs::write(&path, "old").unwrap();
+        let mut file = AtomicFile::create(&path).unwrap();
+        let sound = std::mem::replace(
+            &mut file.file,
+            BufWriter::new(File::open(&path).unwrap()), // open for reading: every write fails
+        );
+        assert!(file.write_all(&[0; 100_000]).is_err());
+        file.file = sound;
+        file.write_all(b"the rest").unwrap();
+        assert!(file.commit().is_err());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}
