@@ -1,12 +1,15 @@
 //! finegrain framework
 #![warn(missing_docs)]
+pub mod checkpoint;
 pub mod clock;
 mod columns;
 pub mod dispatch;
 mod domain;
+pub mod format;
 pub mod integrator;
 pub mod lanes;
 mod leg;
+pub mod port;
 mod real;
 mod schedule;
 pub mod shape;
