@@ -58,12 +58,33 @@ pub trait Lanes: Copy + Sized {
         found: &mut Found,
     );
 
-    /// Writes the found points' values from `from` to the beginning of `to`.
+    /// Finds the points nearer to the box from `lower` to `upper` than the root of
+    /// `radius_squared`; those inside it have distance 0.
     ///
     /// # Panics
-    /// If `from` is shorter than the slices that were searched, or `to` than what was found.
-    fn gather(from: &[Self], found: &Found, to: &mut [Self]);
+    /// If the coordinate slices differ in length.
+    fn near_box<const D: usize>(
+        points: [&[Self]; D],
+        lower: [Self; D],
+        upper: [Self; D],
+        radius_squared: Self,
+        found: &mut Found,
+    );
+
+    /// Writes element `s` of the found points' records to the beginning of `to[s]`: from an array
+    /// of structures, where a point's values share a cache line, to lanes.
+    ///
+    /// # Panics
+    /// If there are fewer records than points were searched, or `to` has no room for what was
+    /// found.
+    fn gather(from: &[Record<Self>], found: &Found, to: &mut [Vec<Self>; RECORD]);
 }
+
+/// Values of a point that are gathered together.
+pub const RECORD: usize = 8;
+
+/// Values of one point, next to each other in memory.
+pub type Record<T> = [T; RECORD];
 
 macro_rules! lanes {
     ($scalar:ty, $within:ident, $gather:ident) => {
@@ -88,18 +109,39 @@ macro_rules! lanes {
             }
 
             #[inline]
-            fn gather(from: &[Self], found: &Found, to: &mut [Self]) {
-                assert!(from.len() >= found.searched, "fewer values than points searched");
-                let to = &mut to[..found.count];
+            fn near_box<const D: usize>(
+                points: [&[Self]; D],
+                lower: [Self; D],
+                upper: [Self; D],
+                radius_squared: Self,
+                found: &mut Found,
+            ) {
+                let n = points.first().map_or(0, |x| x.len());
+                assert!(points.iter().all(|x| x.len() == n), "coordinates of different lengths");
+                found.prepare(n);
+                for j in 0..n {
+                    let mut distance_squared = 0.0;
+                    for a in 0..D {
+                        let x = points[a][j];
+                        let d = (lower[a] - x).max(x - upper[a]).max(0.0);
+                        distance_squared = d.mul_add(d, distance_squared);
+                    }
+                    found.indices[found.count] = j as u32;
+                    found.count += usize::from(distance_squared < radius_squared);
+                }
+            }
+
+            #[inline]
+            fn gather(from: &[Record<Self>], found: &Found, to: &mut [Vec<Self>; RECORD]) {
+                assert!(from.len() >= found.searched, "fewer records than points searched");
+                assert!(to.iter().all(|t| t.len() >= found.count), "no room for what was found");
                 #[cfg(target_arch = "x86_64")]
                 if avx512::is_available() {
                     // SAFETY: the instruction set is there; every found index is below
-                    // `searched` and so inside `from`; `to` has as many elements as were found.
+                    // `searched` and so inside `from`; `to` has room for what was found.
                     return unsafe { avx512::$gather(from, found.indices(), to) };
                 }
-                for (to, &i) in to.iter_mut().zip(found.indices()) {
-                    *to = from[i as usize];
-                }
+                transpose(from, found.indices(), to, 0);
             }
         }
     };
@@ -125,6 +167,21 @@ fn search<T: num_traits::Float, const D: usize>(
         }
         indices[*count] = j as u32;
         *count += usize::from(distance_squared < radius_squared);
+    }
+}
+
+/// Writes the records at `indices[first..]` to their lanes, one at a time.
+#[inline]
+fn transpose<T: Copy>(
+    from: &[Record<T>],
+    indices: &[u32],
+    to: &mut [Vec<T>; RECORD],
+    first: usize,
+) {
+    for (k, &i) in indices.iter().enumerate().skip(first) {
+        for (lane, &value) in to.iter_mut().zip(&from[i as usize]) {
+            lane[k] = value;
+        }
     }
 }
 
@@ -156,12 +213,16 @@ mod tests {
                 .map(|j| j as u32)
                 .collect();
             assert_eq!(found.indices(), expected, "{n} points");
-            let mut gathered = vec![T::nan(); found.len() + 3];
-            T::gather(&y, &found, &mut gathered);
-            for (k, &j) in expected.iter().enumerate() {
-                assert_eq!(gathered[k], y[j as usize]);
+            let records: Vec<Record<T>> =
+                y.iter().map(|&y| std::array::from_fn(|s| y + T::of(s as f64))).collect();
+            let mut gathered = std::array::from_fn(|_| vec![T::nan(); found.len() + 3]);
+            T::gather(&records, &found, &mut gathered);
+            for (s, lane) in gathered.iter().enumerate() {
+                for (k, &j) in expected.iter().enumerate() {
+                    assert_eq!(lane[k], records[j as usize][s]);
+                }
+                assert!(lane[found.len()..].iter().all(|g| g.is_nan()));
             }
-            assert!(gathered[found.len()..].iter().all(|g| g.is_nan()));
         }
     }
 
@@ -183,10 +244,39 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "fewer values")]
-    fn values_of_fewer_points_are_refused() {
+    fn near_box_is_within_of_the_nearest_point_of_the_box() {
+        let [x, y, z] = points::<f64>(500);
+        let (lower, upper) = ([-0.2, 0.1, 0.0], [0.3, 0.4, 0.05]);
+        let mut found = Found::default();
+        f64::near_box([&x, &y, &z], lower, upper, 0.09, &mut found);
+        let expected: Vec<u32> = (0..500)
+            .filter(|&j| {
+                let at = [x[j], y[j], z[j]];
+                let d2: f64 =
+                    (0..3).map(|a| (at[a] - at[a].clamp(lower[a], upper[a])).powi(2)).sum();
+                d2 < 0.09
+            })
+            .map(|j| j as u32)
+            .collect();
+        assert!(!expected.is_empty() && expected.len() < 500);
+        assert_eq!(found.indices(), expected);
+    }
+
+    #[test]
+    #[should_panic(expected = "fewer records")]
+    fn records_of_fewer_points_are_refused() {
         let mut found = Found::default();
         f64::within([&[0.0; 20]], [0.0], 1.0, &mut found);
-        f64::gather(&[1.0; 19], &found, &mut [0.0; 20]);
+        let mut room = std::array::from_fn(|_| vec![0.0; 20]);
+        f64::gather(&[[1.0; RECORD]; 19], &found, &mut room);
+    }
+
+    #[test]
+    #[should_panic(expected = "no room")]
+    fn room_for_fewer_points_is_refused() {
+        let mut found = Found::default();
+        f64::within([&[0.0; 20]], [0.0], 1.0, &mut found);
+        let mut room = std::array::from_fn(|s| vec![0.0; if s == 5 { 19 } else { 20 }]);
+        f64::gather(&[[1.0; RECORD]; 20], &found, &mut room);
     }
 }

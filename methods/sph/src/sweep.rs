@@ -85,9 +85,9 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         let Scratch { candidates, neighbours } = scratch;
         let first = near.spans()[0].start;
         for cell in block.cells() {
-            candidates.collect(&self.gathered, near, block, cell);
+            candidates.collect(&self.gathered, near, block, cell, self.kernel.support_radius());
             for k in 0..cell.span.len() {
-                let particle = candidates.particle(k);
+                let particle = candidates.particle(&self.gathered, k);
                 neighbours.gather(&self.gathered, candidates, &particle, &self.kernel);
                 let sums = self.sum(&particle, neighbours);
                 written.store(cell.span.start - first + k, &sums);
