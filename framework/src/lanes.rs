@@ -71,6 +71,13 @@ pub trait Lanes: Copy + Sized {
         found: &mut Found,
     );
 
+    /// `sum_i a_i b_i` over whole groups of [`SUMS`] elements, in as many partial sums that are then
+    /// added by halves.
+    ///
+    /// # Panics
+    /// If the lengths differ or are no multiple of [`SUMS`].
+    fn dot(a: &[Self], b: &[Self]) -> Self;
+
     /// Writes element `s` of the found points' records to the beginning of `to[s]`: from an array
     /// of structures, where a point's values share a cache line, to lanes.
     ///
@@ -80,6 +87,9 @@ pub trait Lanes: Copy + Sized {
     fn gather(from: &[Record<Self>], found: &Found, to: &mut [Vec<Self>; RECORD]);
 }
 
+/// Partial sums of [`Lanes::dot`]: two full vectors of f64, one of f32.
+pub const SUMS: usize = 16;
+
 /// Values of a point that are gathered together.
 pub const RECORD: usize = 8;
 
@@ -87,7 +97,7 @@ pub const RECORD: usize = 8;
 pub type Record<T> = [T; RECORD];
 
 macro_rules! lanes {
-    ($scalar:ty, $within:ident, $gather:ident) => {
+    ($scalar:ty, $within:ident, $near_box:ident, $gather:ident, $dot:ident) => {
         impl Lanes for $scalar {
             #[inline]
             fn within<const D: usize>(
@@ -105,7 +115,7 @@ macro_rules! lanes {
                     // indices room for n and one vector more (`prepare`).
                     return unsafe { avx512::$within(points, centre, radius_squared, found) };
                 }
-                search(points, centre, radius_squared, found, 0);
+                search(points, radius_squared, found, |a, x| x - centre[a]);
             }
 
             #[inline]
@@ -119,16 +129,33 @@ macro_rules! lanes {
                 let n = points.first().map_or(0, |x| x.len());
                 assert!(points.iter().all(|x| x.len() == n), "coordinates of different lengths");
                 found.prepare(n);
-                for j in 0..n {
-                    let mut distance_squared = 0.0;
-                    for a in 0..D {
-                        let x = points[a][j];
-                        let d = (lower[a] - x).max(x - upper[a]).max(0.0);
-                        distance_squared = d.mul_add(d, distance_squared);
-                    }
-                    found.indices[found.count] = j as u32;
-                    found.count += usize::from(distance_squared < radius_squared);
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: as in `within`.
+                    return unsafe {
+                        avx512::$near_box(points, lower, upper, radius_squared, found)
+                    };
                 }
+                search(points, radius_squared, found, |a, x| {
+                    (lower[a] - x).max(x - upper[a]).max(0.0)
+                });
+            }
+
+            #[inline(always)]
+            fn dot(a: &[Self], b: &[Self]) -> Self {
+                assert!(a.len() == b.len() && a.len() % SUMS == 0, "not whole groups");
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: the instruction set is there; both are whole groups, equally many.
+                    return unsafe { avx512::$dot(a, b) };
+                }
+                let mut sums = [0.0 as $scalar; SUMS];
+                for (a, b) in a.as_chunks::<SUMS>().0.iter().zip(b.as_chunks::<SUMS>().0) {
+                    for l in 0..SUMS {
+                        sums[l] = a[l].mul_add(b[l], sums[l]);
+                    }
+                }
+                add_by_halves(sums)
             }
 
             #[inline]
@@ -146,28 +173,39 @@ macro_rules! lanes {
         }
     };
 }
-lanes!(f64, within_f64, gather_f64);
-lanes!(f32, within_f32, gather_f32);
+lanes!(f64, within_f64, near_box_f64, gather_f64, dot_f64);
+lanes!(f32, within_f32, near_box_f32, gather_f32, dot_f32);
 
-/// Searches `first..` one point at a time, without branches.
+/// Searches one point at a time, without branches.
 #[inline]
 fn search<T: num_traits::Float, const D: usize>(
     points: [&[T]; D],
-    centre: [T; D],
     radius_squared: T,
     found: &mut Found,
-    first: usize,
+    displacement: impl Fn(usize, T) -> T,
 ) {
-    let Found { indices, count, searched } = found;
-    for j in first..*searched {
+    for j in 0..found.searched {
         let mut distance_squared = T::zero();
         for a in 0..D {
-            let d = points[a][j] - centre[a];
+            let d = displacement(a, points[a][j]);
             distance_squared = d.mul_add(d, distance_squared);
         }
-        indices[*count] = j as u32;
-        *count += usize::from(distance_squared < radius_squared);
+        found.indices[found.count] = j as u32;
+        found.count += usize::from(distance_squared < radius_squared);
     }
+}
+
+/// Adds the upper half to the lower until one is left.
+#[inline(always)]
+fn add_by_halves<T: num_traits::Float>(mut sums: [T; SUMS]) -> T {
+    let mut half = SUMS / 2;
+    while half > 0 {
+        for l in 0..half {
+            sums[l] = sums[l] + sums[l + half];
+        }
+        half /= 2;
+    }
+    sums[0]
 }
 
 /// Writes the records at `indices[first..]` to their lanes, one at a time.
@@ -234,6 +272,23 @@ mod tests {
     #[test]
     fn f32_agrees_with_the_definition() {
         agrees_with_the_definition::<f32>();
+    }
+
+    fn dot_agrees_with_the_definition<T: Real>() {
+        for groups in [0, 1, 2, 11] {
+            let [x, y, _] = points::<T>(groups * SUMS);
+            let mut sums = [T::zero(); SUMS];
+            for (i, (&x, &y)) in x.iter().zip(&y).enumerate() {
+                sums[i % SUMS] = x.mul_add(y, sums[i % SUMS]);
+            }
+            assert_eq!(T::dot(&x, &y), add_by_halves(sums));
+        }
+    }
+
+    #[test]
+    fn dot_in_f64_and_f32() {
+        dot_agrees_with_the_definition::<f64>();
+        dot_agrees_with_the_definition::<f32>();
     }
 
     #[test]

@@ -1,15 +1,12 @@
 //! What a particle sees of its neighbours: gathered once, into lanes that every term runs over.
 
-use finegrain_framework::lanes::{Found, RECORD, Record};
+use finegrain_framework::lanes::{Found, RECORD, Record, SUMS};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::{Cell, CellBlock, Run};
 use finegrain_framework::{Near, Rate, Real, State, View};
 
 use crate::fields::Fields;
 use crate::kernel::Kernel;
-
-/// Lanes are padded to a multiple of this: two full vectors of f64, one of f32.
-pub(crate) const LANES: usize = 16;
 
 /// A quantity of neighbours that terms read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,8 +36,12 @@ impl Quantity {
 /// Where a quantity is stored.
 #[derive(Clone, Copy, Debug)]
 enum Source<T> {
+    /// The coordinate in a direction, as it is seen.
+    Position(usize),
     State(State<T>),
     Rate(Rate<T>),
+    /// The place is not used.
+    Nothing,
 }
 
 /// The quantities that a sweep gathers, with their columns.
@@ -50,7 +51,8 @@ enum Source<T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Gathered<T> {
     position: Vec<State<T>>,
-    sources: Vec<Source<T>>,
+    /// What the places of all records hold.
+    pages: Vec<Record<Source<T>>>,
     /// Place of each quantity in the records; `ABSENT` if the sweep does not gather it.
     places: [usize; Quantity::COUNT],
 }
@@ -62,11 +64,8 @@ impl<T: Real> Gathered<T> {
     pub fn new(fields: &Fields<T>, mut quantities: Vec<Quantity>) -> Self {
         quantities.sort_unstable();
         quantities.dedup();
-        let mut gathered = Self {
-            position: fields.position.clone(),
-            sources: Vec::new(),
-            places: [ABSENT; Quantity::COUNT],
-        };
+        let mut sources: Vec<_> = (0..fields.position.len()).map(Source::Position).collect();
+        let mut places = [ABSENT; Quantity::COUNT];
         for quantity in quantities {
             let source = match quantity {
                 Quantity::Velocity(a) => Source::State(fields.velocity[a]),
@@ -78,15 +77,17 @@ impl<T: Real> Gathered<T> {
                 },
                 Quantity::StressTerm(k) => Source::Rate(fields.stress_term[k]),
             };
-            gathered.places[quantity.index()] = gathered.position.len() + gathered.sources.len();
-            gathered.sources.push(source);
+            places[quantity.index()] = sources.len();
+            sources.push(source);
         }
-        gathered
+        sources.resize(sources.len().next_multiple_of(RECORD), Source::Nothing);
+        let pages = sources.as_chunks().0.to_vec();
+        Self { position: fields.position.clone(), pages, places }
     }
 
-    /// Records of a candidate.
-    fn pages(&self) -> usize {
-        (self.position.len() + self.sources.len()).div_ceil(RECORD)
+    /// What the places of a candidate's records hold.
+    fn pages(&self) -> &[Record<Source<T>>] {
+        &self.pages
     }
 }
 
@@ -117,6 +118,7 @@ impl<T: Real, const D: usize> Default for Candidates<T, D> {
 impl<T: Real, const D: usize> Candidates<T, D> {
     /// Collects what lies within `range` of the box around the particles of `cell`, positions as
     /// they are seen from it.
+    #[inline(always)]
     pub fn collect(
         &mut self,
         gathered: &Gathered<T>,
@@ -135,7 +137,7 @@ impl<T: Real, const D: usize> Candidates<T, D> {
         let range = range * T::of(1.0 + 1e-5);
         block.candidates(cell, &mut self.runs);
         self.position.iter_mut().for_each(Vec::clear);
-        self.pages.resize_with(gathered.pages(), Vec::new);
+        self.pages.resize_with(gathered.pages().len(), Vec::new);
         self.pages.iter_mut().for_each(Vec::clear);
         for run in &self.runs {
             let reach = near.reach(run.owner, run.span);
@@ -153,25 +155,29 @@ impl<T: Real, const D: usize> Candidates<T, D> {
                 let start = (cell.span.start - run.span.start) as u32;
                 self.own = first + found.partition_point(|&i| i < start);
             }
-            for page in &mut self.pages {
-                page.resize(first + found.len(), [T::zero(); RECORD]);
-            }
             for a in 0..D {
                 let (values, shift) = (points[a], shift[a]);
                 self.position[a].extend(found.iter().map(|&i| values[i as usize] + shift));
-                let seen = &self.position[a][first..];
-                for (record, &x) in self.pages[0][first..].iter_mut().zip(seen) {
-                    record[a] = x;
-                }
             }
-            for (k, &source) in gathered.sources.iter().enumerate() {
-                let values = match source {
+            for (page, sources) in self.pages.iter_mut().zip(gathered.pages()) {
+                let values: Record<&[T]> = std::array::from_fn(|s| match sources[s] {
+                    Source::Position(_) | Source::Nothing => points[0],
                     Source::State(column) => near.state(column).at(reach),
                     Source::Rate(column) => near.rate(column).at(reach),
-                };
-                let (page, slot) = ((D + k) / RECORD, (D + k) % RECORD);
-                for (record, &i) in self.pages[page][first..].iter_mut().zip(found) {
-                    record[slot] = values[i as usize];
+                });
+                page.resize(first + found.len(), [T::zero(); RECORD]);
+                for (record, &i) in page[first..].iter_mut().zip(found) {
+                    for s in 0..RECORD {
+                        record[s] = values[s][i as usize];
+                    }
+                }
+                for (s, source) in sources.iter().enumerate() {
+                    if let Source::Position(a) = source {
+                        let seen = &self.position[*a][first..];
+                        for (record, &x) in page[first..].iter_mut().zip(seen) {
+                            record[s] = x;
+                        }
+                    }
                 }
             }
         }
@@ -249,9 +255,9 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         let positions = std::array::from_fn(|a| &candidates.position[a][..]);
         T::within(positions, particle.position, support * support, &mut self.found);
         let count = self.found.len();
-        let padded = count.next_multiple_of(LANES);
+        let padded = count.next_multiple_of(SUMS);
         self.padded = padded;
-        if self.distance_squared.len() < padded || self.pages.len() != gathered.pages() {
+        if self.distance_squared.len() < padded || self.pages.len() != gathered.pages().len() {
             self.grow(padded, gathered);
         }
         for (page, records) in self.pages.iter_mut().zip(&candidates.pages) {
@@ -279,7 +285,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[cold]
     fn grow(&mut self, length: usize, gathered: &Gathered<T>) {
         self.places = gathered.places;
-        self.pages.resize_with(gathered.pages(), || std::array::from_fn(|_| Vec::new()));
+        self.pages.resize_with(gathered.pages().len(), || std::array::from_fn(|_| Vec::new()));
         let all = self
             .pages
             .iter_mut()
@@ -292,26 +298,33 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
 
     /// `x_i - x_j` along direction `a`.
     #[inline(always)]
-    pub fn difference(&self, a: usize) -> &[[T; LANES]] {
-        self.pages[0][a][..self.padded].as_chunks().0
+    pub fn difference(&self, a: usize) -> &[T] {
+        &self.pages[0][a][..self.padded]
     }
 
     /// `|x_i - x_j|^2`.
     #[inline(always)]
-    pub fn distance_squared(&self) -> &[[T; LANES]] {
-        self.distance_squared[..self.padded].as_chunks().0
+    pub fn distance_squared(&self) -> &[T] {
+        &self.distance_squared[..self.padded]
     }
 
     /// `F`, with `grad_i W_ij = F (x_i - x_j)`.
     #[inline(always)]
-    pub fn gradient_factor(&self) -> &[[T; LANES]] {
-        self.gradient_factor[..self.padded].as_chunks().0
+    pub fn gradient_factor(&self) -> &[T] {
+        &self.gradient_factor[..self.padded]
+    }
+
+    /// Depth of the neighbours below the surface of a body, if there are bodies.
+    #[inline(always)]
+    pub fn wall_depth(&self) -> Option<&[T]> {
+        (self.places[Quantity::WallDepth.index()] != ABSENT)
+            .then(|| self.values(Quantity::WallDepth))
     }
 
     /// A gathered quantity of the neighbours.
     #[inline(always)]
-    pub fn values(&self, quantity: Quantity) -> &[[T; LANES]] {
+    pub fn values(&self, quantity: Quantity) -> &[T] {
         let place = self.places[quantity.index()];
-        self.pages[place / RECORD][place % RECORD][..self.padded].as_chunks().0
+        &self.pages[place / RECORD][place % RECORD][..self.padded]
     }
 }

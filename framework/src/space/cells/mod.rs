@@ -116,7 +116,7 @@ impl<T: Real> Cells<T> {
             .map(|a| columns.state(&format!("sorted_at_{}", ["x", "y", "z"][a])))
             .collect();
         Ok(Self {
-            lattice: Lattice::new([0.0; 3], [1.0; 3], [false; 3], 0, range, 1),
+            lattice: Lattice::new([0.0; 3], [1.0; 3], [false; 3], 0, range),
             region,
             range,
             skin,
@@ -248,7 +248,7 @@ impl<T: Real> Cells<T> {
             length[a] = high - low;
         }
         let range = self.range + self.skin;
-        let mut lattice = Lattice::new(lower, length, periodic, dims, range, 1);
+        let mut lattice = Lattice::new(lower, length, periodic, dims, range);
         // Particles a cell holds where there are any: judged from the whole box, which is an
         // underestimate for a sparse one; blocks are then a little large.
         let cells: f64 = lattice.counts.iter().map(|&n| n as f64).product();
