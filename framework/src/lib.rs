@@ -2,6 +2,8 @@
 #![warn(missing_docs)]
 pub mod clock;
 mod columns;
+#[cfg(doctest)]
+mod compile_fail;
 pub mod dispatch;
 mod domain;
 pub mod integrator;

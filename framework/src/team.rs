@@ -35,7 +35,12 @@ impl Shared {
         // SAFETY: `Team::run` keeps the closure alive until all members have met in `end`.
         let task = unsafe { &*task };
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| task(worker))) {
-            self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(panic);
+            let mut first = self.panic.lock().unwrap_or_else(PoisonError::into_inner);
+            match *first {
+                None => *first = Some(panic),
+                // Dropping a payload might panic once more, past the meeting.
+                Some(_) => std::mem::forget(panic),
+            }
         }
         true
     }

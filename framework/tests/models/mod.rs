@@ -2,6 +2,7 @@
 //! another.
 #![allow(dead_code, reason = "every test binary uses its own share of these")]
 
+pub mod closures;
 pub mod heat;
 pub mod particles;
 pub mod plate;
