@@ -135,13 +135,18 @@ fn a_panic_with_a_payload_that_panics() {
     assert_eq!(error, expected("taking over", Cause::Panic("no message".to_owned())));
 }
 
+fn set(level: &mut f64, value: f64) -> Result<(), Fault> {
+    *level = value;
+    Ok(())
+}
+
 #[test]
 fn values_that_are_not_finite() {
     let cause = Cause::NotFinite { column: "level".to_owned() };
     let updates: [Updated; 3] = [
-        |level, _| Ok(*level = f64::NAN),
-        |level, _| Ok(*level = f64::INFINITY),
-        |level, _| Ok(*level = f64::NEG_INFINITY),
+        |level, _| set(level, f64::NAN),
+        |level, _| set(level, f64::INFINITY),
+        |level, _| set(level, f64::NEG_INFINITY),
     ];
     for updated in updates {
         let error = error_of(|| ring(|_, _| Ok(()), updated));
@@ -155,7 +160,7 @@ fn a_nan_is_found_at_the_next_check() {
     for schedule in Schedule::ALL {
         let run = |check_every| {
             let settings = Settings { schedule, workers: 3, check_every, ..Settings::default() };
-            let model = ring(|_, _| Ok(()), |level, _| Ok(*level = f64::NAN));
+            let model = ring(|_, _| Ok(()), |level, _| set(level, f64::NAN));
             Simulation::new(model, settings).unwrap().advance(20)
         };
         run(None).unwrap();
