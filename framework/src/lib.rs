@@ -8,6 +8,8 @@ pub mod dispatch;
 mod domain;
 pub mod integrator;
 mod leg;
+#[cfg(all(test, loom))]
+mod model_checks;
 mod real;
 mod schedule;
 pub mod shape;
