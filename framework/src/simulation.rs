@@ -116,7 +116,10 @@ impl<D: Domain> Simulation<D> {
     /// Starts the workers; nothing is computed yet.
     ///
     /// # Errors
-    /// If the system refuses threads.
+    /// If the system refuses threads, or there are to be no workers.
+    ///
+    /// # Panics
+    /// If the step swaps columns of different types: its handles belong to other columns.
     pub fn new(model: Model<D>, settings: Settings) -> std::io::Result<Self> {
         let executor =
             Executor::new(settings.schedule, settings.workers, settings.hand_out.clone())?;
@@ -262,7 +265,8 @@ impl<D: Domain> Simulation<D> {
         if self.executor.schedule() != Schedule::PeerToPeer {
             return u64::MAX;
         }
-        self.settings.steps_ahead.unwrap_or(8).max(1)
+        // A leg's parts are counted in 32 bits.
+        self.settings.steps_ahead.unwrap_or(8).clamp(1, 1 << 16)
     }
 
     fn begin_pace(&mut self) -> Result<(), RunError> {
@@ -295,7 +299,7 @@ impl<D: Domain> Simulation<D> {
                 "{pace:?} is no pace: the time step must be positive and finite"
             ))),
             Ok(Err(fault)) => Cause::Fault(fault),
-            Err(panic) => Cause::Panic(panic_message(panic.as_ref())),
+            Err(panic) => Cause::Panic(panic_message(panic)),
         };
         Err(RunError {
             method: self.model.method.clone(),
