@@ -8,6 +8,8 @@ use std::marker::PhantomData;
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::format::{Kind, Values};
+
 /// Element type of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ElementKind {
@@ -24,6 +26,17 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
+    /// What files call it.
+    pub fn file_kind(self) -> Kind {
+        match self {
+            Self::F32 => Kind::F32,
+            Self::F64 => Kind::F64,
+            Self::U32 => Kind::U32,
+            Self::U64 => Kind::U64,
+            Self::U8 => Kind::U8,
+        }
+    }
+
     /// Bytes of one element.
     pub fn size(self) -> usize {
         match self {
@@ -272,6 +285,12 @@ impl Columns {
         &mut bytemuck::cast_slice_mut(&mut column.lines)[..self.points * column.kind.size()]
     }
 
+    /// Values of a column of any element type, to be written to a file.
+    pub fn any_values(&self, id: ColumnId) -> Values<'_> {
+        let column = self.column(id);
+        values_of(column.kind, &column.lines, self.points)
+    }
+
     /// Exchanges the memory of two columns of one element type.
     pub(crate) fn exchange(&mut self, a: ColumnId, b: ColumnId) {
         let (a, b) = (a.0 as usize, b.0 as usize);
@@ -304,6 +323,17 @@ impl Columns {
     /// Bytes held by all columns.
     pub fn memory(&self) -> usize {
         self.columns.iter().map(|c| c.lines.capacity() * size_of::<Line>()).sum()
+    }
+}
+
+/// The first `points` elements of type `kind` in `memory`.
+pub(crate) fn values_of<W: Pod>(kind: ElementKind, memory: &[W], points: usize) -> Values<'_> {
+    match kind {
+        ElementKind::F32 => Values::F32(&bytemuck::cast_slice(memory)[..points]),
+        ElementKind::F64 => Values::F64(&bytemuck::cast_slice(memory)[..points]),
+        ElementKind::U32 => Values::U32(&bytemuck::cast_slice(memory)[..points]),
+        ElementKind::U64 => Values::U64(&bytemuck::cast_slice(memory)[..points]),
+        ElementKind::U8 => Values::U8(&bytemuck::cast_slice(memory)[..points]),
     }
 }
 

@@ -269,6 +269,11 @@ impl Partition {
         &self.spans[self.span_start[id] as usize..self.span_start[id + 1] as usize]
     }
 
+    /// The sub-domain that owns `point`; `None` if there is no such point.
+    pub fn owner(&self, point: usize) -> Option<usize> {
+        (0..self.len()).find(|&id| self.spans(id).iter().any(|span| span.range().contains(&point)))
+    }
+
     /// The neighbours of sub-domain `id`, ascending.
     pub fn neighbours(&self, id: usize) -> &[u32] {
         &self.neighbours[self.neighbour_start[id] as usize..self.neighbour_start[id + 1] as usize]

@@ -1,102 +1,28 @@
 //! A simulation: a method's model, run step by step under a schedule.
 
+mod ahead;
+mod error;
+mod model;
+mod position;
+mod saved;
+mod settings;
+
+pub use error::RunError;
+pub use model::Model;
+pub use position::{Position, RestoreError};
+pub use settings::Settings;
+
+pub(crate) use saved::{Saved, column_block};
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::clock::Clock;
 use crate::columns::Columns;
 use crate::domain::Domain;
-use crate::integrator::Plan;
 use crate::leg::{Cause, Desk, Failure, Leg, panic_message};
-use crate::schedule::{Executor, HandOut, Schedule};
+use crate::schedule::{Executor, Schedule};
 use crate::stage::Fault;
-use crate::whole::{FixedPace, Pace, Pacing, Partials, Whole, WholeStage};
-
-/// What a method builds: divided space, fields, and the stages that advance them.
-pub struct Model<D: Domain> {
-    /// The method's name, for messages and checkpoints.
-    pub method: String,
-    /// Divided space.
-    pub domain: D,
-    /// Fields, with their initial state.
-    pub columns: Columns,
-    /// The step, and what comes before the first.
-    pub plan: Plan<D>,
-    /// Whole-domain stages, run in order at the beginning of every pace.
-    pub whole: Vec<Box<dyn WholeStage<D>>>,
-    /// Time step control, run after them.
-    pub pacing: Box<dyn Pacing<D>>,
-}
-
-impl<D: Domain> Model<D> {
-    /// A model that needs no whole-domain work, stepped by the same `dt` always.
-    pub fn with_fixed_dt(
-        method: &str,
-        domain: D,
-        columns: Columns,
-        plan: impl Into<Plan<D>>,
-        dt: f64,
-    ) -> Self {
-        Self {
-            method: method.to_owned(),
-            domain,
-            columns,
-            plan: plan.into(),
-            whole: Vec::new(),
-            pacing: Box::new(FixedPace(dt)),
-        }
-    }
-}
-
-/// How to run a model; none of it changes a result.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    /// How workers meet.
-    pub schedule: Schedule,
-    /// Number of workers; all cores by default.
-    pub workers: usize,
-    /// Order of hand-out.
-    pub hand_out: HandOut,
-    /// Check that state columns are finite after every so many steps; `None` never. A NaN
-    /// spreads to a neighbourhood a step, so a check every few steps still says where it began.
-    pub check_every: Option<u64>,
-    /// Most steps that `PeerToPeer` runs between meetings; chosen from the size of the cache and
-    /// of a sub-domain if `None`.
-    pub steps_ahead: Option<u64>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            schedule: Schedule::default(),
-            workers: crate::dispatch::cores(),
-            hand_out: HandOut::default(),
-            check_every: Some(10),
-            steps_ahead: None,
-        }
-    }
-}
-
-/// Why a run ended before its time.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{method}: step {step} (t = {time:.6e}), stage {stage:?}{}: {cause}", at(*.sub_domain))]
-pub struct RunError {
-    /// The method.
-    pub method: String,
-    /// Number of the step that failed, counted from 0.
-    pub step: u64,
-    /// Time at its beginning.
-    pub time: f64,
-    /// Name of the stage.
-    pub stage: String,
-    /// Number of the sub-domain; `None` for whole-domain work.
-    pub sub_domain: Option<usize>,
-    /// Why.
-    pub cause: Cause,
-}
-
-fn at(sub_domain: Option<usize>) -> String {
-    sub_domain.map_or_else(String::new, |id| format!(", sub-domain {id}"))
-}
+use crate::whole::{Pace, Partials, Whole};
 
 /// A model being run.
 pub struct Simulation<D: Domain> {
@@ -161,10 +87,22 @@ impl<D: Domain> Simulation<D> {
         &self.settings
     }
 
-    /// Shortens the last steps so that one ends at `time` exactly. Set it before the steps near
-    /// the end: a pace that has begun is not changed.
-    pub fn end_at(&mut self, time: f64) {
-        self.end_time = Some(time);
+    /// Shortens the last steps so that one ends at `time` exactly; `None` for no end. Steps go on
+    /// past the end if asked for.
+    ///
+    /// Part of what is computed, unlike the points at which a run is cut into calls of
+    /// [`Simulation::advance`]: set the same end from the start, or the time step may differ.
+    pub fn end_at(&mut self, time: impl Into<Option<f64>>) {
+        let time = time.into();
+        if time == self.end_time {
+            return;
+        }
+        self.end_time = time;
+        if self.pace_left > 0 {
+            // Only a new end changes a pace that has begun: a restart with the old end must not
+            // compute the time step anew, which would round it differently.
+            self.set_pace(Pace { dt: self.clock.dt(), steps: self.pace_left });
+        }
     }
 
     /// Everything at once, with the team: for monitors.
@@ -179,17 +117,19 @@ impl<D: Domain> Simulation<D> {
         }
     }
 
-    /// Prepares the first step: whole-domain work, and the rates that the integrator wants to
-    /// have before it. [`Simulation::advance`] does so by itself; call it to look at the initial
-    /// state as the stages see it.
+    /// Prepares the next step: whole-domain work if it is due and, before the first step, the
+    /// rates that the integrator wants to have. [`Simulation::advance`] does so by itself; call it
+    /// to look at the initial state as the stages see it, or to know the time step.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn begin(&mut self) -> Result<(), RunError> {
+        if self.pace_left == 0 {
+            self.begin_pace()?;
+        }
         if self.begun {
             return Ok(());
         }
-        self.begin_pace()?;
         if let Some(prologue) = &self.model.plan.prologue {
             let mut desk = Desk::new(prologue, &self.model.columns, self.settings.workers);
             let step = self.clock.step();
@@ -215,13 +155,10 @@ impl<D: Domain> Simulation<D> {
     /// If a stage fails, panics or leaves a value that is not finite. The state is then that of
     /// no step in particular; go back to the last checkpoint.
     pub fn advance(&mut self, steps: u64) -> Result<(), RunError> {
-        self.begin()?;
         let mut left = steps;
         while left > 0 {
-            if self.pace_left == 0 {
-                self.begin_pace()?;
-            }
-            let steps = left.min(self.pace_left).min(self.steps_ahead());
+            self.begin()?;
+            let steps = left.min(self.pace_left).min(self.leg_steps());
             let first = self.clock.step();
             let leg = Leg::new(
                 &self.model.domain,
@@ -239,6 +176,11 @@ impl<D: Domain> Simulation<D> {
             left -= steps;
         }
         Ok(())
+    }
+
+    /// Whether the first step has been prepared, by [`Simulation::begin`].
+    pub fn has_begun(&self) -> bool {
+        self.begun
     }
 
     /// Steps until whole-domain work is due again or the end time is reached, whichever is first.
@@ -259,14 +201,15 @@ impl<D: Domain> Simulation<D> {
         hash.digest()
     }
 
-    /// Steps between meetings: bounded for `PeerToPeer`, where a sub-domain and those around it
-    /// should stay in the cache while time goes on.
-    fn steps_ahead(&self) -> u64 {
+    /// Most steps that the workers run without coming back: bounded for `PeerToPeer` only, where
+    /// a sub-domain and those around it should stay in the cache while time goes on.
+    pub fn leg_steps(&self) -> u64 {
         if self.executor.schedule() != Schedule::PeerToPeer {
             return u64::MAX;
         }
+        let chosen = self.settings.steps_ahead;
         // A leg's parts are counted in 32 bits.
-        self.settings.steps_ahead.unwrap_or(8).clamp(1, 1 << 16)
+        chosen.unwrap_or_else(|| ahead::steps_ahead(&self.model)).clamp(1, 1 << 16)
     }
 
     fn begin_pace(&mut self) -> Result<(), RunError> {
@@ -301,18 +244,29 @@ impl<D: Domain> Simulation<D> {
             Ok(Err(fault)) => Cause::Fault(fault),
             Err(panic) => Cause::Panic(panic_message(panic)),
         };
-        Err(RunError {
+        Err(self.error_now(name, None, cause))
+    }
+
+    /// An error of work that is done between steps.
+    pub(crate) fn error_now(
+        &self,
+        stage: impl Into<String>,
+        sub_domain: Option<usize>,
+        cause: Cause,
+    ) -> RunError {
+        RunError {
             method: self.model.method.clone(),
             step: self.clock.step(),
             time: self.clock.time(),
-            stage: name,
-            sub_domain: None,
+            stage: stage.into(),
+            sub_domain,
             cause,
-        })
+        }
     }
 
     fn set_pace(&mut self, pace: Pace) {
         let Pace { mut dt, mut steps } = pace;
+        let mut aim = None;
         if let Some(end) = self.end_time {
             let remaining = end - self.clock.time();
             // A whole number of steps but for rounding is not worth one more.
@@ -320,9 +274,13 @@ impl<D: Domain> Simulation<D> {
             if needed >= 1.0 && needed <= steps as f64 {
                 dt = remaining / needed;
                 steps = needed as u64;
+                aim = Some(end);
             }
         }
         self.clock.set_dt(dt);
+        if let Some(end) = aim {
+            self.clock.aim(steps, end);
+        }
         self.pace_left = steps;
     }
 

@@ -16,6 +16,7 @@ enum Layout<'a> {
     Interleaved(Values<'a>),
     Split([Values<'a>; 3]),
     Plane([Values<'a>; 2]),
+    Line(Values<'a>),
 }
 
 impl<'a> Array<'a> {
@@ -44,6 +45,12 @@ impl<'a> Array<'a> {
         Self { name, layout }
     }
 
+    /// A vector along x for each point; the file gets y = z = 0.
+    pub fn line(name: &'a str, values: impl Into<Values<'a>>) -> Self {
+        let layout = Layout::Line(values.into());
+        Self { name, layout }
+    }
+
     /// The name in the file.
     pub fn name(&self) -> &'a str {
         self.name
@@ -53,7 +60,7 @@ impl<'a> Array<'a> {
     pub fn components(&self) -> usize {
         match self.layout {
             Layout::Scalar(_) => 1,
-            Layout::Interleaved(_) | Layout::Split(_) | Layout::Plane(_) => 3,
+            Layout::Interleaved(_) | Layout::Split(_) | Layout::Plane(_) | Layout::Line(_) => 3,
         }
     }
 
@@ -98,7 +105,7 @@ impl<'a> Array<'a> {
         let columns = self.columns();
         let width = match self.layout {
             Layout::Scalar(_) | Layout::Interleaved(_) => 1,
-            Layout::Split(_) | Layout::Plane(_) => 3,
+            Layout::Split(_) | Layout::Plane(_) | Layout::Line(_) => 3,
         };
         columns[0].len() * width * columns[0].kind().size()
     }
@@ -107,7 +114,7 @@ impl<'a> Array<'a> {
     pub(super) fn write_le(&self, out: &mut impl Write) -> io::Result<()> {
         match self.layout {
             Layout::Scalar(values) | Layout::Interleaved(values) => values.write_le(out),
-            Layout::Split(_) | Layout::Plane(_) => match self.kind() {
+            Layout::Split(_) | Layout::Plane(_) | Layout::Line(_) => match self.kind() {
                 Kind::F32 => self.write_apart::<f32>(out),
                 Kind::F64 => self.write_apart::<f64>(out),
                 Kind::U8 => self.write_apart::<u8>(out),
@@ -124,7 +131,9 @@ impl<'a> Array<'a> {
 
     fn columns(&self) -> &[Values<'a>] {
         match &self.layout {
-            Layout::Scalar(values) | Layout::Interleaved(values) => std::slice::from_ref(values),
+            Layout::Scalar(values) | Layout::Interleaved(values) | Layout::Line(values) => {
+                std::slice::from_ref(values)
+            }
             Layout::Split(components) => components,
             Layout::Plane(components) => components,
         }

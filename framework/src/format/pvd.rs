@@ -41,6 +41,11 @@ impl Pvd {
         Ok(())
     }
 
+    /// Keeps the entries whose file `keep` says so of: those that are there, say.
+    pub fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
+        self.entries.retain(|entry| keep(&entry.file));
+    }
+
     /// How many files there are.
     pub fn len(&self) -> usize {
         self.entries.len()

@@ -1,6 +1,7 @@
 //! Points that do not see each other: systems of ordinary differential equations.
 
 use crate::domain::{Domain, Partition, Piece, Span};
+use crate::viewable::{Geometry, Viewable};
 
 /// `n` points without neighbours, cut into equal sub-domains.
 #[derive(Debug)]
@@ -38,5 +39,13 @@ impl Domain for Independent {
 
     fn sub_domain(&self, id: usize) -> Piece<'_> {
         self.partition.piece(id)
+    }
+}
+
+/// Shown as a row of points at distance 1.
+impl Viewable for Independent {
+    fn geometry(&self) -> Geometry {
+        let shape = [self.partition.points(), 1, 1];
+        Geometry::Image { shape, origin: [0.0; 3], spacing: [1.0; 3] }
     }
 }

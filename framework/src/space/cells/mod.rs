@@ -18,12 +18,13 @@ pub use block::{Cell, CellBlock, Run};
 
 use bytemuck::Zeroable;
 
-use crate::columns::{Columns, ElementKind, Line, State};
+use crate::columns::{Columns, ElementKind, Handle, Line, State};
 use crate::domain::{Domain, Partition, Span};
 use crate::real::Real;
 use crate::stage::Fault;
 use crate::team::Team;
 use crate::view::Near;
+use crate::viewable::{Geometry, Viewable};
 use lattice::Lattice;
 use sort::Sorter;
 use table::KeyTable;
@@ -359,7 +360,7 @@ fn position<T: Real>(at: &[&[T]], i: usize) -> [f64; 3] {
 }
 
 fn copy_column<T: Real>(columns: &mut Columns, from: State<T>, to: State<T>) {
-    let (from, to) = (crate::Handle::id(from), crate::Handle::id(to));
+    let (from, to) = (from.id(), to.id());
     columns.copy(from, to);
 }
 
@@ -451,5 +452,11 @@ impl<T: Real> Domain for Cells<T> {
         self.lattice = lattice;
         self.divide(columns.points());
         Ok(())
+    }
+}
+
+impl<T: Real> Viewable for Cells<T> {
+    fn geometry(&self) -> Geometry {
+        Geometry::Points(self.positions.iter().map(|position| position.id()).collect())
     }
 }

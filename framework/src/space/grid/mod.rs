@@ -5,6 +5,7 @@ mod rows;
 pub use rows::{Rows, RowsMut};
 
 use crate::domain::{Domain, Partition, Piece, Span, SubDomain};
+use crate::viewable::{Geometry, Viewable};
 
 /// A 1-D, 2-D or 3-D structured grid.
 ///
@@ -212,6 +213,12 @@ impl Domain for Grid {
     fn sub_domain(&self, id: usize) -> Tile<'_> {
         let [rows, planes] = self.extent(id % self.tiles[0], id / self.tiles[0]);
         Tile { grid: self, id, rows, planes }
+    }
+}
+
+impl Viewable for Grid {
+    fn geometry(&self) -> Geometry {
+        Geometry::Image { shape: self.shape, origin: self.origin, spacing: self.spacing }
     }
 }
 
