@@ -7,6 +7,22 @@
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 
+/// Name of the instruction set that lanes are computed with on this processor. Runs on one kind of
+/// processor agree bit for bit; across kinds that is meant, and tested where it can be, but not
+/// promised.
+pub fn instruction_set() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if avx512::is_available() {
+            return "x86-64 with AVX-512";
+        }
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            return "x86-64 with AVX2";
+        }
+    }
+    std::env::consts::ARCH
+}
+
 /// Points that [`Lanes::within`] has found, by index into the slices it searched.
 #[derive(Clone, Debug, Default)]
 pub struct Found {

@@ -208,9 +208,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named_with_what_would_be_right() {
-        let said = |setting| {
-            Parameters::new("x", &DECLARED, [setting]).unwrap_err().to_string()
-        };
+        let said = |setting| Parameters::new("x", &DECLARED, [setting]).unwrap_err().to_string();
         assert_eq!(
             said(("resolution", "7")),
             "resolution = 7 is not valid: it must be between 8.0 and 2000.0"

@@ -81,11 +81,10 @@ mod tests {
             let time = (u(0.0, 0.0, h)[a] - u(0.0, 0.0, -h)[a]) / (2.0 * h);
             let along_x = (u(h, 0.0, 0.0)[a] - u(-h, 0.0, 0.0)[a]) / (2.0 * h);
             let along_y = (u(0.0, h, 0.0)[a] - u(0.0, -h, 0.0)[a]) / (2.0 * h);
-            let around = u(h, 0.0, 0.0)[a] + u(-h, 0.0, 0.0)[a] + u(0.0, h, 0.0)[a]
-                + u(0.0, -h, 0.0)[a];
+            let around =
+                u(h, 0.0, 0.0)[a] + u(-h, 0.0, 0.0)[a] + u(0.0, h, 0.0)[a] + u(0.0, -h, 0.0)[a];
             let laplacian = (around - 4.0 * here[a]) / (h * h);
-            let residual = time + here[0] * along_x + here[1] * along_y
-                + pressure[a] / (2.0 * h)
+            let residual = time + here[0] * along_x + here[1] * along_y + pressure[a] / (2.0 * h)
                 - laplacian / scene.reynolds;
             assert!(residual.abs() < 1e-5, "{residual}");
         }
