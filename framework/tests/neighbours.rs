@@ -327,6 +327,20 @@ fn sorting_is_stable() {
     }
 }
 
+/// However thin the box, a block is worth its hand-out.
+#[test]
+fn blocks_have_about_the_points_asked_for() {
+    for [x, y, z] in [[40.0, 40.0, 40.0], [600.0, 10.0, 10.0], [60_000.0, 1.0, 1.0]] {
+        let mut options = options(&[0.0; 3], &[x, y, z], &[true; 3], 1.0, 0.0);
+        options.block_points = 100;
+        let points = scattered(&mut Random(10), 60_000, &[0.0; 3], &[x, y, z]);
+        let mut case = Case::<f64>::new(options, &points);
+        case.sort(1).unwrap();
+        let mean = 60_000 / case.cells.partition().len();
+        assert!((50..=200).contains(&mean), "{mean} points a block in a box of {x} x {y} x {z}");
+    }
+}
+
 #[test]
 fn a_position_that_is_not_finite_is_named() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
