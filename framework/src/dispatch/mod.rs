@@ -10,7 +10,7 @@
 //!    queue is not the end. [`ReadyDispatch`] takes offers until all that was announced has
 //!    been handed out.
 //! 4. *Event driven*: a worker without work sleeps until a value arrives or the end is known;
-//!    nobody polls ([`waiting`]).
+//!    nobody polls (module `waiting`).
 
 use std::sync::OnceLock;
 
