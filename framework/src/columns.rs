@@ -248,6 +248,11 @@ impl Columns {
         (0u16..).map(ColumnId).zip(&self.columns)
     }
 
+    /// The ids of the declared columns, in order of declaration.
+    pub(crate) fn ids(&self) -> impl Iterator<Item = ColumnId> + use<> {
+        (0..self.columns.len() as u16).map(ColumnId)
+    }
+
     /// One column's declaration.
     pub fn column(&self, id: ColumnId) -> &Column {
         &self.columns[id.0 as usize]
