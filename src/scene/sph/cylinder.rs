@@ -145,17 +145,20 @@ impl<T: Real> Flow<T> for CylinderFlow {
     fn judge(
         &self,
         report: &mut Report,
-        summary: &Summary,
-        _: &mut Simulation<Cells<T>>,
-        _: &Fields<T>,
+        _: &Summary,
+        simulation: &mut Simulation<Cells<T>>,
+        fields: &Fields<T>,
+        mass: f64,
     ) {
-        let Some(last) = summary.histories[0].last() else {
+        let [x, y, z] =
+            measure::totals(&mut simulation.whole(), fields, mass).flow.map(|f| f / self.volume);
+        if x == 0.0 {
             return;
-        };
-        let drag = self.scene.drag(last[0]);
+        }
+        let drag = self.scene.drag(x);
         report.result("drag_k", drag, self.scene.reference_drag());
-        report.result("superficial_velocity", last[0], None);
-        report.result("cross_flow", (last[1].powi(2) + last[2].powi(2)).sqrt() / last[0], None);
+        report.result("superficial_velocity", x, None);
+        report.result("cross_flow", y.hypot(z) / x, None);
     }
 
     fn title(&self) -> String {

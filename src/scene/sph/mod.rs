@@ -86,6 +86,7 @@ trait Flow<T: Real> {
         summary: &Summary,
         simulation: &mut Simulation<Cells<T>>,
         fields: &Fields<T>,
+        mass: f64,
     );
 
     /// Title of the picture of the final field, and the unit of speed.
@@ -146,7 +147,7 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
         let summary = run.run()?;
         let mut report = Report::new(&summary, points);
         let simulation = run.simulation_mut();
-        flow.judge(&mut report, &summary, simulation, &fields);
+        flow.judge(&mut report, &summary, simulation, &fields, particle_mass);
         report.picture = Some(picture(simulation, &fields, flow.title(), flow.spacing()));
         Ok(report)
     }

@@ -94,32 +94,27 @@ impl<T: Real> Flow<T> for Vortices {
         summary: &Summary,
         simulation: &mut Simulation<Cells<T>>,
         fields: &Fields<T>,
+        mass: f64,
     ) {
-        let history = &summary.histories[0];
-        let energy: Vec<f64> =
-            history.column("kinetic_energy").map(Iterator::collect).unwrap_or_default();
-        let (Some(first), Some(last), Some(&time)) =
-            (energy.first(), energy.last(), history.times().last())
-        else {
+        let time = summary.time;
+        let history = summary.histories[0].column("kinetic_energy");
+        let (Some(first), true) = (history.and_then(|mut energy| energy.next()), time > 0.0) else {
             return;
         };
-        if time == 0.0 {
-            return;
-        }
+        let last = measure::totals(&mut simulation.whole(), fields, mass).kinetic_energy;
         let is_plane = self.scene.dims == 2;
         let rate = (first / last).ln() / (2.0 * time);
         report.result("decay_rate", rate, is_plane.then(|| self.scene.decay_rate()));
         if !is_plane {
             return;
         }
-        let now = summary.time;
         let scene = self.scene;
         let columns = simulation.columns();
         let (mut l1, mut l2) = ([0.0; 2], [0.0; 2]);
         for i in 0..columns.points() {
             let value = |handle: State<T>| columns.values(handle)[i].as_f64();
             let x = [value(fields.position[0]), value(fields.position[1]), 0.0];
-            let exact = scene.velocity(x, now);
+            let exact = scene.velocity(x, time);
             let (dx, dy) =
                 (value(fields.velocity[0]) - exact[0], value(fields.velocity[1]) - exact[1]);
             l1[0] += dx.hypot(dy);

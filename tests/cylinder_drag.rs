@@ -1,0 +1,30 @@
+//! Creeping flow past a cylinder, against the drag of Sangani & Acrivos (1982).
+
+use finegrain::framework::Schedule;
+use finegrain::scene::{Orders, Precision, Scene};
+
+/// Relative error of `drag_k` at a resolution.
+fn error(resolution: &str) -> f64 {
+    let scene = Scene::find("cylinder").unwrap();
+    let parameters = scene.set([("resolution", resolution)]).unwrap();
+    let prepared = scene.prepare(None, &parameters, Precision::F64).unwrap();
+    let orders = Orders {
+        schedule: Schedule::default(),
+        workers: None,
+        steps: None,
+        until: None,
+        out: None,
+        checkpoint_every: None,
+        restart: None,
+        progress: None,
+        stops: None,
+    };
+    prepared.run(orders).unwrap().errors["drag_k"]
+}
+
+#[test]
+fn drag_is_within_five_percent_at_50_points_and_better_than_at_25() {
+    let (coarse, fine) = (error("24"), error("50"));
+    assert!(fine.abs() < 0.05, "error {fine}");
+    assert!(fine.abs() < coarse.abs(), "errors {coarse}, {fine}");
+}
