@@ -2,14 +2,11 @@
 use finegrain::framework::{space::Independent, *};
 
 struct Lorenz([State<f64>; 3], [Rate<f64>; 3]);
-
 impl RateStage<Independent> for Lorenz {
     type Scratch = ();
-
     fn writes(&self) -> Vec<ColumnId> {
         self.1.map(Handle::id).into()
     }
-
     fn rate(
         &self,
         near: &Near<Independent>,

@@ -1,6 +1,5 @@
 //! Creeping flow past a cylinder, against the drag of Sangani & Acrivos (1982).
 
-use finegrain::framework::Schedule;
 use finegrain::scene::{Orders, Precision, Scene};
 
 /// Relative error of `drag_k` at a resolution.
@@ -8,18 +7,7 @@ fn error(resolution: &str) -> f64 {
     let scene = Scene::find("cylinder").unwrap();
     let parameters = scene.set([("resolution", resolution)]).unwrap();
     let prepared = scene.prepare(None, &parameters, Precision::F64).unwrap();
-    let orders = Orders {
-        schedule: Schedule::default(),
-        workers: None,
-        steps: None,
-        until: None,
-        out: None,
-        checkpoint_every: None,
-        restart: None,
-        progress: None,
-        stops: None,
-    };
-    prepared.run(orders).unwrap().errors["drag_k"]
+    prepared.run(Orders::default()).unwrap().errors["drag_k"]
 }
 
 #[test]

@@ -30,6 +30,7 @@ pub enum Precision {
 }
 
 /// How a scene is to be run; none of it changes what is modelled.
+#[derive(Default)]
 pub struct Orders {
     /// How workers meet.
     pub schedule: Schedule,
