@@ -91,10 +91,9 @@ impl Cylinder {
         let is = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
         // f L^3 / nu^2 decides between creeping and inertial flow.
         let forcing = self.body_acceleration * SIDE.powi(3) / self.viscosity.powi(2);
-        if is(self.solid_fraction, PI * 0.04) {
-            if let Some(&(_, drag)) = INERTIAL.iter().find(|(g, _)| is(forcing, *g)) {
-                return Some(drag);
-            }
+        let inertial = INERTIAL.iter().find(|(g, _)| is(forcing, *g));
+        if let (Some(&(_, drag)), true) = (inertial, is(self.solid_fraction, PI * 0.04)) {
+            return Some(drag);
         }
         // Inertia adds a part in 1e5 at forcing 5 and grows with its square.
         let creeping = CREEPING.iter().find(|(phi, _)| is(self.solid_fraction, *phi))?;

@@ -115,6 +115,9 @@ pub trait Prepared {
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError>;
 }
 
+/// How a scene is made ready.
+type Prepare = fn(&Parameters, Precision) -> Result<Box<dyn Prepared>, SceneError>;
+
 /// An entry of the catalogue.
 pub struct Scene {
     /// Its name.
@@ -125,7 +128,7 @@ pub struct Scene {
     pub methods: &'static [&'static str],
     /// Its parameters, and those of its methods.
     pub parameters: fn() -> Vec<Parameter>,
-    prepare: fn(&Parameters, Precision) -> Result<Box<dyn Prepared>, SceneError>,
+    prepare: Prepare,
 }
 
 /// All scenes.
