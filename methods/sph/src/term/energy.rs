@@ -37,7 +37,8 @@ impl<T: Real> Energy<T> {
             for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
                 *jump = (i.velocity[a] - v) * dx;
             }
-            sum += T::dot(weight, jump);
+            let [along] = T::dots(weight, [&*jump]);
+            sum += along;
         }
         let half = T::of(0.5);
         let compression = half * mass * sum;
