@@ -1,7 +1,8 @@
 //! `finegrain run`.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -102,18 +103,26 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         if is_file { format!("scene file `{}`: {error}", arguments.scene).into() } else { error }
     };
     let scene = Scene::find(&file.scene).map_err(|e| in_file(e.into()))?;
-    // What the command line says goes over what the file says.
-    let settings: Vec<_> = file.settings().into_iter().chain(arguments.settings).collect();
-    let settings = settings.iter().map(|(k, v)| (k.as_str(), v.as_str()));
-    let parameters = scene.set(settings).map_err(|e| in_file(e.into()))?;
+    // What the command line says goes over what the file says; each answers for its own mistakes.
+    let mut settings = file.settings();
+    let set = |settings: &[(String, String)]| -> Result<Parameters, CommandError> {
+        Ok(scene.set(settings.iter().map(|(k, v)| (k.as_str(), v.as_str())))?)
+    };
+    set(&settings).map_err(in_file)?;
+    settings.extend(arguments.settings);
+    let parameters = set(&settings)?;
+    let is_files_method = arguments.method.is_none();
     let method = arguments.method.or(file.method);
     let precision = arguments.precision.or(file.precision.map(Into::into)).unwrap_or_default();
-    let prepared = scene.prepare(method.as_deref(), &parameters, precision)?;
+    let prepared = scene
+        .prepare(method.as_deref(), &parameters, precision)
+        .map_err(|e| if is_files_method { in_file(e.into()) } else { e.into() })?;
 
     let (stop, stops) = Port::unbounded("stop");
-    // A second Ctrl-C, when the run has ended or does not listen, ends the process.
+    // The first Ctrl-C ends the run in order, the second ends the process.
+    let asked = AtomicBool::new(false);
     ctrlc::set_handler(move || {
-        if stop.post(()).is_err() {
+        if asked.swap(true, Ordering::Relaxed) || stop.post(()).is_err() {
             std::process::exit(130);
         }
     })?;
@@ -137,11 +146,12 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         bar.finish();
     }
     let report = outcome?;
-    say(&report);
+    let mut stdout = std::io::stdout().lock();
+    say(&mut stdout, &report)?;
     if let (Some(out), Some(picture)) = (&arguments.out, &report.picture) {
         let path = out.join("final.png");
         picture.save(&path)?;
-        println!("picture of the final field: {}", path.display());
+        writeln!(stdout, "picture of the final field: {}", path.display())?;
     }
     if arguments.json {
         let line = Line {
@@ -162,32 +172,35 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
             results: &report.results,
             errors: &report.errors,
         };
-        println!("{}", serde_json::to_string(&line)?);
+        writeln!(stdout, "{}", serde_json::to_string(&line)?)?;
     }
     Ok(())
 }
 
-fn say(report: &Report) {
-    println!(
+fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
+    writeln!(
+        out,
         "{} after {} steps, t = {:.6e} s, in {:.2} s ({:.3} million point-steps a second)",
         report.stopped,
         report.steps,
         report.time,
         report.wall_s,
         report.point_steps_per_s() / 1e6
-    );
+    )?;
     for (name, value) in &report.results {
         match report.errors.get(name) {
             Some(error) if error != value => {
-                println!("  {name} = {value:.6e} (relative error {:+.3} %)", 100.0 * error);
+                let percent = 100.0 * error;
+                writeln!(out, "  {name} = {value:.6e} (relative error {percent:+.3} %)")?;
             }
-            _ => println!("  {name} = {value:.6e}"),
+            _ => writeln!(out, "  {name} = {value:.6e}")?,
         }
     }
-    println!("  state hash {:016x}", report.state_hash);
+    writeln!(out, "  state hash {:016x}", report.state_hash)?;
     for file in report.files.iter().filter(|f| f.extension().is_some_and(|e| e != "vtu")) {
-        println!("  wrote {}", file.display());
+        writeln!(out, "  wrote {}", file.display())?;
     }
+    Ok(())
 }
 
 /// Progress on standard error: how far, steps per second, time left.

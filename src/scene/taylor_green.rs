@@ -10,9 +10,9 @@ use super::parameter::{Parameter, Parameters};
 
 /// Parameters that every method shares.
 pub const PARAMETERS: [Parameter; 3] = [
-    Parameter::number("dim", 2.0, [2.0, 3.0], "", "dimensions, 2 or 3"),
+    Parameter::integer("dim", 2, [2, 3], "dimensions"),
     Parameter::number("reynolds", 100.0, [0.01, 1e6], "", "U L / nu"),
-    Parameter::number("resolution", 50.0, [8.0, 4000.0], "", "points across the box"),
+    Parameter::integer("resolution", 50, [8, 4000], "points across the box"),
 ];
 
 /// The scene with its parameters set.

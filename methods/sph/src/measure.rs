@@ -75,7 +75,8 @@ pub fn largest_speed<T: Real>(whole: &mut Whole<'_, Cells<T>>, fields: &Fields<T
 /// Number of neighbours within the range of interaction that a particle has on average, itself not
 /// counted; images through which a particle is seen several times count each.
 pub fn mean_neighbours<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> f64 {
-    let range = T::of(whole.domain.range());
+    // Pairs exactly the range apart do not interact.
+    let range = T::of(whole.domain.range()) * (T::one() - T::epsilon().sqrt());
     let positions = whole.domain.positions().to_vec();
     let points = whole.columns.points() as f64;
     let [pairs] = whole.sum(|near| {

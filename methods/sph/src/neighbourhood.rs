@@ -134,7 +134,7 @@ impl<T: Real, const D: usize> Candidates<T, D> {
             position[a].at(own).iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
         });
         // Shifting the box instead of the particles rounds differently: allow for it.
-        let range = range * T::of(1.0 + 1e-5);
+        let range = range * (T::one() + T::epsilon().sqrt());
         block.candidates(cell, &mut self.runs);
         self.position.iter_mut().for_each(Vec::clear);
         self.pages.resize_with(gathered.pages().len(), Vec::new);
@@ -251,7 +251,9 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         particle: &Particle<T, D>,
         kernel: &Kernel<T>,
     ) {
-        let support = kernel.support_radius();
+        // On a lattice many pairs are exactly the support apart, and rounding would decide, for
+        // each of the two by itself, whether they interact: leave them all out.
+        let support = kernel.support_radius() * (T::one() - T::epsilon().sqrt());
         let positions = std::array::from_fn(|a| &candidates.position[a][..]);
         T::within(positions, particle.position, support * support, &mut self.found);
         let (count, padded) = (self.found.len(), self.found.padded());
