@@ -248,6 +248,12 @@ impl Columns {
         (0u16..).map(ColumnId).zip(&self.columns)
     }
 
+    /// The handle of the state column `name`; `None` if there is none of this name and type.
+    pub fn find_state<T: Element>(&self, name: &str) -> Option<State<T>> {
+        let is_it = |c: &Column| c.name == name && c.role == Role::State && c.kind == T::KIND;
+        self.iter().find(|(_, column)| is_it(column)).map(|(id, _)| State(id, PhantomData))
+    }
+
     /// One column's declaration.
     pub fn column(&self, id: ColumnId) -> &Column {
         &self.columns[id.0 as usize]
@@ -294,6 +300,9 @@ impl Columns {
     /// Exchanges the memory of two columns of one element type.
     pub(crate) fn exchange(&mut self, a: ColumnId, b: ColumnId) {
         let (a, b) = (a.0 as usize, b.0 as usize);
+        // Everything that reads columns relies on their memory being as long as their type wants.
+        assert_eq!(self.columns[a].kind, self.columns[b].kind);
+        assert_ne!(a, b);
         let lines = std::mem::take(&mut self.columns[a].lines);
         let lines = std::mem::replace(&mut self.columns[b].lines, lines);
         self.columns[a].lines = lines;
@@ -303,7 +312,7 @@ impl Columns {
     /// a whole-domain stage writes the new values into `spare` and then installs them.
     pub(crate) fn exchange_lines(&mut self, id: ColumnId, spare: &mut Vec<Line>) {
         let column = &mut self.columns[id.0 as usize];
-        debug_assert_eq!(spare.len(), column.lines.len());
+        assert_eq!(spare.len(), column.lines.len());
         std::mem::swap(&mut column.lines, spare);
     }
 

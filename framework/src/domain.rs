@@ -123,6 +123,14 @@ pub enum PartitionError {
         /// The other.
         second: Span,
     },
+    /// A span lies past the last point.
+    #[error("span {span:?} ends past the last of {points} points")]
+    Outside {
+        /// The span.
+        span: Span,
+        /// Points there are.
+        points: usize,
+    },
     /// Some points belong to nobody.
     #[error("{owned} of {points} points are owned by a sub-domain; all must be")]
     Unowned {
@@ -204,8 +212,13 @@ impl Partition {
         self.by_start.sort_unstable_by_key(|s| s.start);
         let mut owned = 0;
         let mut last = Span { start: 0, end: 0 };
+        // An empty span may lie anywhere but outside: its address is computed all the same.
+        let outside = self.spans.iter().find(|s| s.start.max(s.end) > self.points);
+        if let Some(&span) = outside {
+            return Err(PartitionError::Outside { span, points: self.points });
+        }
         for &span in &self.by_start {
-            if span.start < last.end || span.end <= span.start || span.end > self.points {
+            if span.start < last.end || span.end < span.start {
                 return Err(PartitionError::Overlap { first: last, second: span });
             }
             owned += span.len();
@@ -314,6 +327,23 @@ mod tests {
     fn a_point_past_the_end_is_refused() {
         let mut p = Partition::new(4);
         p.push([span(0, 5)], []);
+        assert!(matches!(p.seal(), Err(PartitionError::Outside { .. })));
+    }
+
+    #[test]
+    fn an_empty_span_past_the_end_is_refused() {
+        let mut p = Partition::new(4);
+        p.push([span(0, 4), span(1000, 1000)], []);
+        assert!(matches!(p.seal(), Err(PartitionError::Outside { .. })));
+        let mut p = Partition::new(4);
+        p.push([span(0, 4), span(2, 2), span(4, 4)], []);
+        assert_eq!(p.seal(), Ok(()));
+    }
+
+    #[test]
+    fn a_reversed_span_is_refused() {
+        let mut p = Partition::new(4);
+        p.push([span(0, 4), span(3, 1)], []);
         assert!(matches!(p.seal(), Err(PartitionError::Overlap { .. })));
     }
 

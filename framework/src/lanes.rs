@@ -58,15 +58,46 @@ pub trait Lanes: Copy + Sized {
         found: &mut Found,
     );
 
-    /// Writes the found points' values from `from` to the beginning of `to`.
+    /// Finds the points nearer to the box from `lower` to `upper` than the root of
+    /// `radius_squared`; those inside it have distance 0.
     ///
     /// # Panics
-    /// If `from` is shorter than the slices that were searched, or `to` than what was found.
-    fn gather(from: &[Self], found: &Found, to: &mut [Self]);
+    /// If the coordinate slices differ in length.
+    fn near_box<const D: usize>(
+        points: [&[Self]; D],
+        lower: [Self; D],
+        upper: [Self; D],
+        radius_squared: Self,
+        found: &mut Found,
+    );
+
+    /// `sum_i a_i b_i` over whole groups of [`SUMS`] elements, in as many partial sums that are then
+    /// added by halves.
+    ///
+    /// # Panics
+    /// If the lengths differ or are no multiple of [`SUMS`].
+    fn dot(a: &[Self], b: &[Self]) -> Self;
+
+    /// Writes element `s` of the found points' records to the beginning of `to[s]`: from an array
+    /// of structures, where a point's values share a cache line, to lanes.
+    ///
+    /// # Panics
+    /// If there are fewer records than points were searched, or `to` has no room for what was
+    /// found.
+    fn gather(from: &[Record<Self>], found: &Found, to: &mut [Vec<Self>; RECORD]);
 }
 
+/// Partial sums of [`Lanes::dot`]: two full vectors of f64, one of f32.
+pub const SUMS: usize = 16;
+
+/// Values of a point that are gathered together.
+pub const RECORD: usize = 8;
+
+/// Values of one point, next to each other in memory.
+pub type Record<T> = [T; RECORD];
+
 macro_rules! lanes {
-    ($scalar:ty, $within:ident, $gather:ident) => {
+    ($scalar:ty, $within:ident, $near_box:ident, $gather:ident, $dot:ident) => {
         impl Lanes for $scalar {
             #[inline]
             fn within<const D: usize>(
@@ -84,47 +115,111 @@ macro_rules! lanes {
                     // indices room for n and one vector more (`prepare`).
                     return unsafe { avx512::$within(points, centre, radius_squared, found) };
                 }
-                search(points, centre, radius_squared, found, 0);
+                search(points, radius_squared, found, |a, x| x - centre[a]);
             }
 
             #[inline]
-            fn gather(from: &[Self], found: &Found, to: &mut [Self]) {
-                assert!(from.len() >= found.searched, "fewer values than points searched");
-                let to = &mut to[..found.count];
+            fn near_box<const D: usize>(
+                points: [&[Self]; D],
+                lower: [Self; D],
+                upper: [Self; D],
+                radius_squared: Self,
+                found: &mut Found,
+            ) {
+                let n = points.first().map_or(0, |x| x.len());
+                assert!(points.iter().all(|x| x.len() == n), "coordinates of different lengths");
+                found.prepare(n);
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: as in `within`.
+                    return unsafe {
+                        avx512::$near_box(points, lower, upper, radius_squared, found)
+                    };
+                }
+                search(points, radius_squared, found, |a, x| {
+                    (lower[a] - x).max(x - upper[a]).max(0.0)
+                });
+            }
+
+            #[inline(always)]
+            fn dot(a: &[Self], b: &[Self]) -> Self {
+                assert!(a.len() == b.len() && a.len() % SUMS == 0, "not whole groups");
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: the instruction set is there; both are whole groups, equally many.
+                    return unsafe { avx512::$dot(a, b) };
+                }
+                let mut sums = [0.0 as $scalar; SUMS];
+                for (a, b) in a.as_chunks::<SUMS>().0.iter().zip(b.as_chunks::<SUMS>().0) {
+                    for l in 0..SUMS {
+                        sums[l] = a[l].mul_add(b[l], sums[l]);
+                    }
+                }
+                add_by_halves(sums)
+            }
+
+            #[inline]
+            fn gather(from: &[Record<Self>], found: &Found, to: &mut [Vec<Self>; RECORD]) {
+                assert!(from.len() >= found.searched, "fewer records than points searched");
+                assert!(to.iter().all(|t| t.len() >= found.count), "no room for what was found");
                 #[cfg(target_arch = "x86_64")]
                 if avx512::is_available() {
                     // SAFETY: the instruction set is there; every found index is below
-                    // `searched` and so inside `from`; `to` has as many elements as were found.
+                    // `searched` and so inside `from`; `to` has room for what was found.
                     return unsafe { avx512::$gather(from, found.indices(), to) };
                 }
-                for (to, &i) in to.iter_mut().zip(found.indices()) {
-                    *to = from[i as usize];
-                }
+                transpose(from, found.indices(), to, 0);
             }
         }
     };
 }
-lanes!(f64, within_f64, gather_f64);
-lanes!(f32, within_f32, gather_f32);
+lanes!(f64, within_f64, near_box_f64, gather_f64, dot_f64);
+lanes!(f32, within_f32, near_box_f32, gather_f32, dot_f32);
 
-/// Searches `first..` one point at a time, without branches.
+/// Searches one point at a time, without branches.
 #[inline]
 fn search<T: num_traits::Float, const D: usize>(
     points: [&[T]; D],
-    centre: [T; D],
     radius_squared: T,
     found: &mut Found,
-    first: usize,
+    displacement: impl Fn(usize, T) -> T,
 ) {
-    let Found { indices, count, searched } = found;
-    for j in first..*searched {
+    for j in 0..found.searched {
         let mut distance_squared = T::zero();
         for a in 0..D {
-            let d = points[a][j] - centre[a];
+            let d = displacement(a, points[a][j]);
             distance_squared = d.mul_add(d, distance_squared);
         }
-        indices[*count] = j as u32;
-        *count += usize::from(distance_squared < radius_squared);
+        found.indices[found.count] = j as u32;
+        found.count += usize::from(distance_squared < radius_squared);
+    }
+}
+
+/// Adds the upper half to the lower until one is left.
+#[inline(always)]
+fn add_by_halves<T: num_traits::Float>(mut sums: [T; SUMS]) -> T {
+    let mut half = SUMS / 2;
+    while half > 0 {
+        for l in 0..half {
+            sums[l] = sums[l] + sums[l + half];
+        }
+        half /= 2;
+    }
+    sums[0]
+}
+
+/// Writes the records at `indices[first..]` to their lanes, one at a time.
+#[inline]
+fn transpose<T: Copy>(
+    from: &[Record<T>],
+    indices: &[u32],
+    to: &mut [Vec<T>; RECORD],
+    first: usize,
+) {
+    for (k, &i) in indices.iter().enumerate().skip(first) {
+        for (lane, &value) in to.iter_mut().zip(&from[i as usize]) {
+            lane[k] = value;
+        }
     }
 }
 
@@ -156,12 +251,16 @@ mod tests {
                 .map(|j| j as u32)
                 .collect();
             assert_eq!(found.indices(), expected, "{n} points");
-            let mut gathered = vec![T::nan(); found.len() + 3];
-            T::gather(&y, &found, &mut gathered);
-            for (k, &j) in expected.iter().enumerate() {
-                assert_eq!(gathered[k], y[j as usize]);
+            let records: Vec<Record<T>> =
+                y.iter().map(|&y| std::array::from_fn(|s| y + T::of(s as f64))).collect();
+            let mut gathered = std::array::from_fn(|_| vec![T::nan(); found.len() + 3]);
+            T::gather(&records, &found, &mut gathered);
+            for (s, lane) in gathered.iter().enumerate() {
+                for (k, &j) in expected.iter().enumerate() {
+                    assert_eq!(lane[k], records[j as usize][s]);
+                }
+                assert!(lane[found.len()..].iter().all(|g| g.is_nan()));
             }
-            assert!(gathered[found.len()..].iter().all(|g| g.is_nan()));
         }
     }
 
@@ -175,6 +274,23 @@ mod tests {
         agrees_with_the_definition::<f32>();
     }
 
+    fn dot_agrees_with_the_definition<T: Real>() {
+        for groups in [0, 1, 2, 11] {
+            let [x, y, _] = points::<T>(groups * SUMS);
+            let mut sums = [T::zero(); SUMS];
+            for (i, (&x, &y)) in x.iter().zip(&y).enumerate() {
+                sums[i % SUMS] = x.mul_add(y, sums[i % SUMS]);
+            }
+            assert_eq!(T::dot(&x, &y), add_by_halves(sums));
+        }
+    }
+
+    #[test]
+    fn dot_in_f64_and_f32() {
+        dot_agrees_with_the_definition::<f64>();
+        dot_agrees_with_the_definition::<f32>();
+    }
+
     #[test]
     fn a_point_that_is_nowhere_is_not_found() {
         let mut found = Found::default();
@@ -183,10 +299,39 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "fewer values")]
-    fn values_of_fewer_points_are_refused() {
+    fn near_box_is_within_of_the_nearest_point_of_the_box() {
+        let [x, y, z] = points::<f64>(500);
+        let (lower, upper) = ([-0.2, 0.1, 0.0], [0.3, 0.4, 0.05]);
+        let mut found = Found::default();
+        f64::near_box([&x, &y, &z], lower, upper, 0.09, &mut found);
+        let expected: Vec<u32> = (0..500)
+            .filter(|&j| {
+                let at = [x[j], y[j], z[j]];
+                let d2: f64 =
+                    (0..3).map(|a| (at[a] - at[a].clamp(lower[a], upper[a])).powi(2)).sum();
+                d2 < 0.09
+            })
+            .map(|j| j as u32)
+            .collect();
+        assert!(!expected.is_empty() && expected.len() < 500);
+        assert_eq!(found.indices(), expected);
+    }
+
+    #[test]
+    #[should_panic(expected = "fewer records")]
+    fn records_of_fewer_points_are_refused() {
         let mut found = Found::default();
         f64::within([&[0.0; 20]], [0.0], 1.0, &mut found);
-        f64::gather(&[1.0; 19], &found, &mut [0.0; 20]);
+        let mut room = std::array::from_fn(|_| vec![0.0; 20]);
+        f64::gather(&[[1.0; RECORD]; 19], &found, &mut room);
+    }
+
+    #[test]
+    #[should_panic(expected = "no room")]
+    fn room_for_fewer_points_is_refused() {
+        let mut found = Found::default();
+        f64::within([&[0.0; 20]], [0.0], 1.0, &mut found);
+        let mut room = std::array::from_fn(|s| vec![0.0; if s == 5 { 19 } else { 20 }]);
+        f64::gather(&[[1.0; RECORD]; 20], &found, &mut room);
     }
 }

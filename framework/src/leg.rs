@@ -1,10 +1,11 @@
 //! A leg: a number of steps that the workers run without coming back to the caller.
 
 use std::any::Any;
+use std::cell::Cell;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, PoisonError, TryLockError};
 
 use crate::clock::Clock;
 use crate::columns::{ColumnId, Columns, Role};
@@ -59,9 +60,17 @@ pub(crate) trait Work: Sync {
     fn failed(&self) -> bool;
 }
 
+/// Working memory of one worker, for every stage of a step.
+type Scratch = Vec<Box<dyn Any + Send>>;
+
+fn scratch_for<D: Domain>(step: &Step<D>) -> Scratch {
+    step.stages.iter().map(|stage| stage.scratch()).collect()
+}
+
 /// Memory that legs reuse, so that a leg does not allocate.
 pub(crate) struct Desk {
-    scratch: Vec<Mutex<Vec<Box<dyn Any + Send>>>>,
+    /// Every worker has its own: the locks are never contended.
+    scratch: Vec<Mutex<Scratch>>,
     slots: Vec<Slot>,
     /// Per set of swapped pairs that occurs, the slots in that order.
     tables: Vec<(u64, Vec<Slot>)>,
@@ -70,10 +79,15 @@ pub(crate) struct Desk {
 
 impl Desk {
     /// Memory for the legs of `step` on `workers` workers.
+    ///
+    /// # Panics
+    /// If the step swaps columns of different types: its handles belong to other columns.
     pub fn new<D: Domain>(step: &Step<D>, columns: &Columns, workers: usize) -> Self {
-        let scratch = (0..workers)
-            .map(|_| Mutex::new(step.stages.iter().map(|s| s.scratch()).collect()))
-            .collect();
+        for &(a, b) in &step.pairs {
+            let kinds = [a, b].map(|id| columns.column(id).kind());
+            assert_eq!(kinds[0], kinds[1], "columns {a:?} and {b:?} are swapped");
+        }
+        let scratch = (0..workers).map(|_| Mutex::new(scratch_for(step))).collect();
         let mut keys = Vec::new();
         for parity in [0, step.swapped] {
             let entries = (0..step.entries.len()).map(Some).chain([None]);
@@ -186,44 +200,65 @@ impl<'a, D: Domain> Leg<'a, D> {
         Place { domain: self.domain, partition: self.partition, id, slots: &table.1 }
     }
 
-    fn scratch(&self, worker: usize) -> MutexGuard<'_, Vec<Box<dyn Any + Send>>> {
-        // Every worker has its own: the lock is never contended. A poisoned scratch belongs to a
-        // stage that panicked; the run ends with that.
-        self.desk.scratch[worker].lock().unwrap_or_else(PoisonError::into_inner)
+    /// Hands `task` the worker's scratch, one for each stage.
+    fn with_scratch<R>(&self, worker: usize, task: impl FnOnce(&mut Scratch) -> R) -> R {
+        match self.desk.scratch[worker].try_lock() {
+            Ok(mut scratch) => task(&mut scratch),
+            Err(TryLockError::Poisoned(scratch)) => task(&mut scratch.into_inner()),
+            // A stage that is itself parallel waits, and rayon runs another sub-domain on its
+            // thread meanwhile: that one needs a scratch of its own.
+            Err(TryLockError::WouldBlock) => task(&mut scratch_for(self.step)),
+        }
+    }
+
+    /// Runs a part; `at` tells which stage it has come to.
+    fn run_part(
+        &self,
+        worker: usize,
+        step: u64,
+        part: usize,
+        sub_domain: usize,
+        at: &Cell<usize>,
+    ) -> Result<(), Cause> {
+        self.with_scratch(worker, |scratch| {
+            for entry in self.step.part_start[part]..self.step.part_start[part + 1] {
+                at.set(entry);
+                self.run_entry(scratch, step, entry, sub_domain)?;
+            }
+            Ok::<_, Fault>(())
+        })?;
+        let is_checked = self.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
+        if is_checked && part + 1 == self.parts() {
+            self.check_finite(step, sub_domain)?;
+        }
+        Ok(())
     }
 
     fn run_entry(
         &self,
-        worker: usize,
+        scratch: &mut Scratch,
         step: u64,
         entry: usize,
         sub_domain: usize,
-    ) -> Result<(), Cause> {
+    ) -> Result<(), Fault> {
         let &Entry { stage, c, .. } = &self.step.entries[entry];
         let moment = self.clock.moment(step, c);
         let place = self.place(step, Some(entry), sub_domain);
-        let mut scratch = self.scratch(worker);
         let scratch = scratch[stage].as_mut();
         let stage = &self.step.stages[stage];
-        let outcome = catch_unwind(AssertUnwindSafe(|| {
-            if stage.is_rate() {
-                let writes = stage.writes();
-                // SAFETY: the schedule runs this part of this sub-domain once, on this worker,
-                // and whatever runs beside it within sight is the same part (module `view`); the
-                // leg's exclusive borrow of the columns keeps their memory in place.
-                let (near, mut rates) =
-                    unsafe { (Near::new(place, writes), Rates::new(place, writes)) };
-                self.domain.check(&near)?;
-                stage.run_rate(&near, &mut rates, scratch, &moment)
-            } else {
-                // SAFETY: as above; in an update part everybody touches only what it owns.
-                let mut own = unsafe { Own::new(place) };
-                stage.run_update(&mut own, scratch, &moment)
-            }
-        }));
-        match outcome {
-            Ok(result) => result.map_err(Cause::Fault),
-            Err(panic) => Err(Cause::Panic(panic_message(panic.as_ref()))),
+        if stage.is_rate() {
+            let writes = stage.writes();
+            // SAFETY: the schedule runs this part of this sub-domain once, on this worker, and
+            // whatever runs beside it within sight is the same part (module `view`); the leg's
+            // exclusive borrow of the columns keeps their memory in place.
+            let (near, mut rates) =
+                unsafe { (Near::new(place, writes), Rates::new(place, writes)) };
+            self.domain.check(&near)?;
+            stage.run_rate(&near, &mut rates, scratch, &moment)
+        } else {
+            // SAFETY: as above; in an update part everybody touches only what it owns.
+            let mut own = unsafe { Own::new(place) };
+            stage.run_update(&mut own, scratch, &moment)
         }
     }
 
@@ -265,22 +300,20 @@ impl<D: Domain> Work for Leg<'_, D> {
         if self.failed() {
             return;
         }
-        let fail = |stage: &str, cause| {
-            self.fail(Failure { step, part, stage: stage.to_owned(), sub_domain, cause });
+        // One net under everything: a worker that unwound would leave the others waiting for it.
+        let at = Cell::new(self.step.part_start[part]);
+        let outcome =
+            catch_unwind(AssertUnwindSafe(|| self.run_part(worker, step, part, sub_domain, &at)));
+        let cause = match outcome {
+            Ok(Ok(())) => return,
+            Ok(Err(cause)) => cause,
+            Err(panic) => Cause::Panic(panic_message(panic)),
         };
-        for entry in self.step.part_start[part]..self.step.part_start[part + 1] {
-            if let Err(cause) = self.run_entry(worker, step, entry, sub_domain) {
-                let stage = self.step.entries[entry].stage;
-                return fail(self.step.stages[stage].name(), cause);
-            }
-        }
-        let is_checked = self.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
-        if is_checked
-            && part + 1 == self.parts()
-            && let Err(cause) = self.check_finite(step, sub_domain)
-        {
-            fail(&self.step.part_name(part), cause);
-        }
+        let stage = match &cause {
+            Cause::NotFinite { .. } => self.step.part_name(part),
+            _ => self.step.stages[self.step.entries[at.get()].stage].name().to_owned(),
+        };
+        self.fail(Failure { step, part, stage, sub_domain, cause });
     }
 
     fn failed(&self) -> bool {
@@ -289,10 +322,17 @@ impl<D: Domain> Work for Leg<'_, D> {
 }
 
 /// What a panic said.
-pub(crate) fn panic_message(panic: &(dyn Any + Send)) -> String {
-    panic
-        .downcast_ref::<&str>()
-        .map(|s| (*s).to_owned())
-        .or_else(|| panic.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "no message".to_owned())
+pub(crate) fn panic_message(panic: Box<dyn Any + Send>) -> String {
+    let message = match panic.downcast::<String>() {
+        Ok(message) => return *message,
+        Err(panic) => panic,
+    };
+    match message.downcast::<&str>() {
+        Ok(message) => (*message).to_owned(),
+        Err(payload) => {
+            // Whatever it is, dropping it might panic once more.
+            std::mem::forget(payload);
+            "no message".to_owned()
+        }
+    }
 }

@@ -3,12 +3,16 @@
 pub mod checkpoint;
 pub mod clock;
 mod columns;
+#[cfg(doctest)]
+mod compile_fail;
 pub mod dispatch;
 mod domain;
 pub mod format;
 pub mod integrator;
 pub mod lanes;
 mod leg;
+#[cfg(all(test, loom))]
+mod model_checks;
 pub mod port;
 mod real;
 pub mod run;

@@ -42,7 +42,10 @@ impl<D: Domain> Simulation<D> {
     /// Starts the workers; nothing is computed yet.
     ///
     /// # Errors
-    /// If the system refuses threads.
+    /// If the system refuses threads, or there are to be no workers.
+    ///
+    /// # Panics
+    /// If the step swaps columns of different types: its handles belong to other columns.
     pub fn new(model: Model<D>, settings: Settings) -> std::io::Result<Self> {
         let executor =
             Executor::new(settings.schedule, settings.workers, settings.hand_out.clone())?;
@@ -205,7 +208,9 @@ impl<D: Domain> Simulation<D> {
             return u64::MAX;
         }
         let chosen = self.settings.steps_ahead;
-        chosen.unwrap_or_else(|| ahead::steps_ahead(&self.model)).max(1)
+        let steps = chosen.unwrap_or_else(|| ahead::steps_ahead(&self.model));
+        // A leg's parts are counted in 32 bits.
+        steps.clamp(1, 1 << 16)
     }
 
     fn begin_pace(&mut self) -> Result<(), RunError> {
@@ -238,7 +243,7 @@ impl<D: Domain> Simulation<D> {
                 "{pace:?} is no pace: the time step must be positive and finite"
             ))),
             Ok(Err(fault)) => Cause::Fault(fault),
-            Err(panic) => Cause::Panic(panic_message(panic.as_ref())),
+            Err(panic) => Cause::Panic(panic_message(panic)),
         };
         Err(self.error_now(name, None, cause))
     }

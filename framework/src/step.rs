@@ -277,12 +277,13 @@ impl<D: Domain> StepBuilder<D> {
     /// Exchanges the memory of two rate columns: the present rates become the last ones.
     ///
     /// # Panics
-    /// As [`StepBuilder::swap`].
+    /// As [`StepBuilder::swap`]; if the two are the same.
     pub fn swap_rates<T: crate::columns::Element>(self, a: Rate<T>, b: Rate<T>) -> Self {
         self.exchange(a.id(), b.id())
     }
 
     pub(crate) fn exchange(mut self, a: ColumnId, b: ColumnId) -> Self {
+        assert_ne!(a, b, "a column is swapped with itself");
         let step = &mut self.step;
         let pair = (a.min(b), a.max(b));
         let index = step.pairs.iter().position(|&p| p == pair).unwrap_or_else(|| {

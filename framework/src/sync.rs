@@ -1,76 +1,42 @@
-//! The primitives that the schedules synchronise with: std's, or a model checker's.
+//! The primitives that workers synchronise with: std's, or a model checker's.
 
 #[cfg(not(loom))]
 pub(crate) use std::{
     hint::spin_loop,
     sync::{
-        Condvar, Mutex,
+        Arc, Condvar, Mutex,
         atomic::{AtomicBool, AtomicU32, AtomicU64, AtomicUsize, Ordering, fence},
     },
-    thread::yield_now,
+    thread::{Builder, JoinHandle, yield_now},
 };
 
 #[cfg(loom)]
 pub(crate) use loom::{
+    cell::UnsafeCell,
     hint::spin_loop,
     sync::{
-        Condvar, Mutex,
+        Arc, Condvar, Mutex,
         atomic::{AtomicBool, AtomicU32, AtomicU64, AtomicUsize, Ordering, fence},
     },
-    thread::yield_now,
+    thread::{Builder, JoinHandle, yield_now},
 };
 
+/// std's cell with the face of the model checker's, which sees every access begin and end.
 #[cfg(not(loom))]
-pub(crate) use crossbeam_deque as deque;
+#[derive(Debug)]
+pub(crate) struct UnsafeCell<T>(std::cell::UnsafeCell<T>);
 
-/// What the model checker sees instead of crossbeam's deque, which is verified by its authors.
-#[cfg(loom)]
-pub(crate) mod deque {
-    use std::collections::VecDeque;
-
-    use loom::sync::{Arc, Mutex};
-
-    #[derive(Debug)]
-    pub struct Worker<T>(Arc<Mutex<VecDeque<T>>>);
-
-    #[derive(Debug)]
-    pub struct Stealer<T>(Arc<Mutex<VecDeque<T>>>);
-
-    #[allow(dead_code, reason = "the real deque can also fail in passing")]
-    pub enum Steal<T> {
-        Empty,
-        Success(T),
-        Retry,
+#[cfg(not(loom))]
+impl<T> UnsafeCell<T> {
+    pub fn new(value: T) -> Self {
+        Self(std::cell::UnsafeCell::new(value))
     }
 
-    impl<T> Worker<T> {
-        pub fn new_lifo() -> Self {
-            Self(Arc::new(Mutex::new(VecDeque::new())))
-        }
-
-        pub fn stealer(&self) -> Stealer<T> {
-            Stealer(self.0.clone())
-        }
-
-        pub fn push(&self, value: T) {
-            self.0.lock().unwrap().push_back(value);
-        }
-
-        pub fn pop(&self) -> Option<T> {
-            self.0.lock().unwrap().pop_back()
-        }
+    pub fn with<R>(&self, read: impl FnOnce(*const T) -> R) -> R {
+        read(self.0.get())
     }
 
-    impl<T> Stealer<T> {
-        pub fn steal(&self) -> Steal<T> {
-            match self.0.lock().unwrap().pop_front() {
-                Some(value) => Steal::Success(value),
-                None => Steal::Empty,
-            }
-        }
-
-        pub fn is_empty(&self) -> bool {
-            self.0.lock().unwrap().is_empty()
-        }
+    pub fn with_mut<R>(&self, write: impl FnOnce(*mut T) -> R) -> R {
+        write(self.0.get())
     }
 }

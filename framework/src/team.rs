@@ -1,12 +1,11 @@
 //! A team of worker threads that lives as long as the run.
 
 use std::any::Any;
-use std::cell::UnsafeCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
+use std::sync::PoisonError;
 
 use crate::dispatch::{Dispatch, Meeting};
+use crate::sync::{Arc, Builder, JoinHandle, Mutex, UnsafeCell};
 
 /// What the team is to do: a closure on the caller's stack, its lifetime erased.
 type Task = *const (dyn Fn(usize) + Sync);
@@ -29,13 +28,18 @@ impl Shared {
     /// Runs the present task as worker `worker`; false if there is none: the team is dissolved.
     fn work(&self, worker: usize) -> bool {
         // SAFETY: between `begin` and `end` nobody writes `task` (see `Sync` above).
-        let Some(task) = (unsafe { *self.task.get() }) else {
+        let Some(task) = self.task.with(|task| unsafe { *task }) else {
             return false;
         };
         // SAFETY: `Team::run` keeps the closure alive until all members have met in `end`.
         let task = unsafe { &*task };
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| task(worker))) {
-            self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(panic);
+            let mut first = self.panic.lock().unwrap_or_else(PoisonError::into_inner);
+            match *first {
+                None => *first = Some(panic),
+                // Dropping a payload might panic once more, past the meeting.
+                Some(_) => std::mem::forget(panic),
+            }
         }
         true
     }
@@ -72,7 +76,7 @@ impl Team {
         let threads = (1..workers)
             .map(|worker| {
                 let shared = Arc::clone(&shared);
-                std::thread::Builder::new().name(format!("finegrain-{worker}")).spawn(move || {
+                Builder::new().name(format!("finegrain-{worker}")).spawn(move || {
                     loop {
                         shared.begin.arrive(|| {});
                         if !shared.work(worker) {
@@ -101,7 +105,7 @@ impl Team {
         // function awaits before `task` goes away; nothing between here and there can unwind.
         let task = unsafe { std::mem::transmute::<&(dyn Fn(usize) + Sync), Task>(task) };
         // SAFETY: all other members wait in `begin`; `&mut self` excludes a second caller.
-        unsafe { *self.shared.task.get() = Some(task) };
+        self.shared.task.with_mut(|present| unsafe { *present = Some(task) });
         self.shared.begin.arrive(|| {});
         self.shared.work(0);
         self.shared.end.arrive(|| {});
@@ -159,7 +163,7 @@ impl Team {
 impl Drop for Team {
     fn drop(&mut self) {
         // SAFETY: all other members wait in `begin` (a `run` always completes its `end`).
-        unsafe { *self.shared.task.get() = None };
+        self.shared.task.with_mut(|present| unsafe { *present = None });
         self.shared.begin.arrive(|| {});
         for thread in self.threads.drain(..) {
             // A worker catches every panic of its task; there is nothing left to report here.

@@ -64,11 +64,18 @@ impl<D> Place<'_, D> {
 }
 
 /// Points of the sub-domain itself or of a neighbour, checked by [`Near::reach`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Reach<'a> {
     span: Span,
-    seen_from: usize,
-    near: PhantomData<&'a ()>,
+    /// From where they are seen: a number alone could be another domain's sub-domain.
+    partition: &'a Partition,
+    id: usize,
+}
+
+impl std::fmt::Debug for Reach<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Reach({:?} from {})", self.span, self.id)
+    }
 }
 
 impl Reach<'_> {
@@ -143,7 +150,7 @@ impl<'a, D: Domain> Near<'a, D> {
                     .any(|s| s.start <= span.start && span.end <= s.end),
             "sub-domain {id} reads points {span:?}, which sub-domain {owner} does not own"
         );
-        Reach { span, seen_from: id, near: PhantomData }
+        Reach { span, partition, id }
     }
 
     /// A state column, as far as it can be seen from here.
@@ -170,12 +177,8 @@ impl<'a, D: Domain> Near<'a, D> {
             "column {} is written by the stage that reads it from neighbours",
             column.id().0
         );
-        View {
-            base: self.place.base(column.id()),
-            id: self.place.id,
-            spans: self.spans(),
-            near: PhantomData,
-        }
+        let Place { partition, id, .. } = self.place;
+        View { base: self.place.base(column.id()), partition, id, near: PhantomData }
     }
 }
 
@@ -183,8 +186,8 @@ impl<'a, D: Domain> Near<'a, D> {
 #[derive(Clone, Copy)]
 pub struct View<'a, T> {
     base: *const T,
+    partition: &'a Partition,
     id: usize,
-    spans: &'a [Span],
     near: PhantomData<&'a [T]>,
 }
 
@@ -195,7 +198,10 @@ impl<'a, T> View<'a, T> {
     /// If `reach` was checked for another sub-domain.
     #[inline]
     pub fn at(&self, reach: Reach<'a>) -> &'a [T] {
-        assert_eq!(reach.seen_from, self.id, "reach of another sub-domain");
+        assert!(
+            reach.id == self.id && std::ptr::eq(reach.partition, self.partition),
+            "reach of another sub-domain"
+        );
         // SAFETY: the span is owned by this sub-domain or a neighbour (`Near::reach`) and so
         // lies inside the column; `Near::new` promises that nobody writes there during `'a`.
         unsafe { std::slice::from_raw_parts(self.base.add(reach.span.start), reach.span.len()) }
@@ -203,7 +209,7 @@ impl<'a, T> View<'a, T> {
 
     /// The sub-domain's own values.
     pub fn own(&self) -> Part<'a, T> {
-        Part { base: self.base, spans: self.spans, part: PhantomData }
+        Part { base: self.base, spans: self.partition.spans(self.id), part: PhantomData }
     }
 }
 

@@ -12,10 +12,11 @@
 //! 4. *Event driven*: a worker without work sleeps until a value arrives or the end is known;
 //!    nobody polls ([`waiting`]).
 
+pub(crate) mod deque;
 mod meeting;
 mod ready;
 mod sequence;
-mod waiting;
+pub(crate) mod waiting;
 
 pub use meeting::Meeting;
 pub use ready::{ReadyDispatch, Server};

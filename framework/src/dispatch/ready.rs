@@ -2,8 +2,8 @@
 
 use crossbeam_utils::CachePadded;
 
+use super::deque::{Deque, Steal};
 use super::waiting::Bell;
-use crate::sync::deque::{Steal, Stealer, Worker};
 use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// Hands out values that arrive while others are being processed.
@@ -15,7 +15,8 @@ use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 /// waits but when [`ReadyDispatch::finish`] has been called for all that were announced.
 #[derive(Debug)]
 pub struct ReadyDispatch {
-    stealers: Vec<Stealer<u32>>,
+    /// What became ready, by the worker that made it so.
+    ready: Vec<Deque>,
     stretches: Vec<CachePadded<Stretch>>,
     /// Finished sub-domains still missing.
     missing: CachePadded<AtomicUsize>,
@@ -24,21 +25,20 @@ pub struct ReadyDispatch {
     bell: Bell,
 }
 
-/// One worker's end of a [`ReadyDispatch`].
+/// One worker's end of a [`ReadyDispatch`]: whoever has it may put ready values in the worker's
+/// deque and take them out again at the same end.
 #[derive(Debug)]
 pub struct Server {
     worker: usize,
-    own: Worker<u32>,
 }
 
 impl ReadyDispatch {
     /// A dispatch and the ends for `workers` workers.
     pub fn new(workers: usize) -> (Self, Vec<Server>) {
-        let servers: Vec<_> =
-            (0..workers).map(|worker| Server { worker, own: Worker::new_lifo() }).collect();
+        let servers = (0..workers).map(|worker| Server { worker }).collect();
         let dispatch = Self {
-            stealers: servers.iter().map(|s| s.own.stealer()).collect(),
-            stretches: servers.iter().map(|_| CachePadded::default()).collect(),
+            ready: (0..workers).map(|_| Deque::default()).collect(),
+            stretches: (0..workers).map(|_| CachePadded::default()).collect(),
             missing: CachePadded::new(AtomicUsize::new(0)),
             closed: AtomicBool::new(true),
             spin: workers <= super::cores(),
@@ -51,6 +51,7 @@ impl ReadyDispatch {
     /// before the end. Nobody may be requesting meanwhile.
     pub fn open(&mut self, values: usize) {
         let workers = self.stretches.len();
+        self.ready.iter_mut().for_each(|ready| ready.reset(values));
         for (worker, stretch) in self.stretches.iter().enumerate() {
             stretch.set(values * worker / workers, values * (worker + 1) / workers);
         }
@@ -60,9 +61,9 @@ impl ReadyDispatch {
 
     /// Puts a ready value where `server`'s worker will take it first.
     #[inline]
-    pub fn offer(&self, server: &Server, value: u32) {
-        server.own.push(value);
-        if self.stealers.len() > 1 {
+    pub fn offer(&self, server: &mut Server, value: u32) {
+        self.ready[server.worker].push(value);
+        if self.ready.len() > 1 {
             self.bell.ring();
         }
     }
@@ -83,13 +84,12 @@ impl ReadyDispatch {
     /// The next value for a worker, where `value_at` tells the value at a place; waits for one to
     /// arrive, `None` at the end.
     #[inline]
-    pub fn request(&self, server: &Server, value_at: impl Fn(usize) -> u32) -> Option<u32> {
+    pub fn request(&self, server: &mut Server, value_at: impl Fn(usize) -> u32) -> Option<u32> {
         loop {
             if self.closed.load(Ordering::Acquire) {
-                while server.own.pop().is_some() {}
                 return None;
             }
-            if let Some(value) = server.own.pop() {
+            if let Some(value) = self.ready[server.worker].pop() {
                 return Some(value);
             }
             if let Some(place) = self.stretches[server.worker].first() {
@@ -103,18 +103,18 @@ impl ReadyDispatch {
             }
             self.bell.wait(self.spin, || {
                 self.closed.load(Ordering::Acquire)
-                    || self.stealers.iter().any(|other| !other.is_empty())
+                    || self.ready.iter().any(|ready| !ready.is_empty())
             });
         }
     }
 
     fn steal(&self, server: &Server) -> Option<u32> {
-        let others = self.stealers.len();
-        (1..others).find_map(|k| {
-            let victim = &self.stealers[(server.worker + k) % others];
+        let workers = self.ready.len();
+        (1..workers).find_map(|k| {
+            let victim = &self.ready[(server.worker + k) % workers];
             loop {
                 match victim.steal() {
-                    Steal::Success(value) => return Some(value),
+                    Steal::Value(value) => return Some(value),
                     Steal::Empty => return None,
                     Steal::Retry => {}
                 }

@@ -34,7 +34,5 @@ pub(super) fn look<D: Domain, R>(
     look: impl FnOnce(&mut Whole<'_, D>) -> R,
 ) -> Result<R, RunError> {
     let looked = catch_unwind(AssertUnwindSafe(|| look(&mut simulation.whole())));
-    looked.map_err(|panic| {
-        simulation.error_now(name(), None, Cause::Panic(panic_message(panic.as_ref())))
-    })
+    looked.map_err(|panic| simulation.error_now(name(), None, Cause::Panic(panic_message(panic))))
 }

@@ -1,10 +1,9 @@
 //! Equal shares of sub-domains, decided beforehand: predictive balance, to compare with.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::order::Order;
 use crate::dispatch::Meeting;
 use crate::leg::Work;
+use crate::sync::{AtomicBool, Ordering};
 use crate::team::Team;
 
 pub(super) struct Fixed {

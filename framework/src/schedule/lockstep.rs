@@ -1,10 +1,9 @@
 //! Slave time loops with a common meeting (Fig. 4b): a part ends when Dispatch completes.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::order::Order;
 use crate::dispatch::Dispatch;
 use crate::leg::Work;
+use crate::sync::{AtomicBool, Ordering};
 use crate::team::Team;
 
 pub(super) struct Lockstep {

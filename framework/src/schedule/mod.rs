@@ -86,6 +86,10 @@ impl Executor {
             Schedule::Serial => 1,
             _ => workers,
         };
+        if workers == 0 {
+            let message = "a schedule needs at least one worker";
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, message));
+        }
         let protocol = match schedule {
             Schedule::Serial => Protocol::Serial,
             Schedule::Lockstep => Protocol::Lockstep(lockstep::Lockstep::new(workers).into()),

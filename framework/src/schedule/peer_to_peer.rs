@@ -52,8 +52,8 @@ impl PeerToPeer {
         self.dispatch.open(sub_domains);
         let (dispatch, progress, servers) = (&self.dispatch, &self.progress, &self.servers);
         team.run(|worker| {
-            let server = servers[worker].lock().unwrap_or_else(|e| e.into_inner());
-            while let Some(id) = dispatch.request(&server, |place| order.at(place) as u32) {
+            let mut server = servers[worker].lock().unwrap_or_else(|e| e.into_inner());
+            while let Some(id) = dispatch.request(&mut server, |place| order.at(place) as u32) {
                 let q = progress.begin(partition, id);
                 let step = steps.start + u64::from(q / parts);
                 work.run(worker, step, (q % parts) as usize, id as usize);
@@ -61,7 +61,7 @@ impl PeerToPeer {
                     dispatch.close();
                 }
                 let is_last = q + 1 == all_parts;
-                progress.end(partition, id, is_last, |ready| dispatch.offer(&server, ready));
+                progress.end(partition, id, is_last, |ready| dispatch.offer(&mut server, ready));
                 if is_last {
                     dispatch.finish();
                 }

@@ -36,7 +36,7 @@ pub fn totals<T: Real>(
             }
             let volume = particle_mass / density[i].as_f64();
             sums[0] += volume;
-            sums[1] += particle_mass;
+            sums[1] += 1.0;
             for (a, &v) in fields.velocity.iter().enumerate() {
                 let v = near.state(v).own().whole()[i].as_f64();
                 sums[2 + a] += volume * v;
@@ -48,7 +48,7 @@ pub fn totals<T: Real>(
     });
     Totals {
         volume: sums[0],
-        mass: sums[1],
+        mass: sums[1] * particle_mass,
         flow: [sums[2], sums[3], sums[4]],
         momentum: [sums[5], sums[6], sums[7]],
         kinetic_energy: sums[8],

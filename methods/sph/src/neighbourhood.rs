@@ -1,15 +1,12 @@
 //! What a particle sees of its neighbours: gathered once, into lanes that every term runs over.
 
-use finegrain_framework::lanes::Found;
+use finegrain_framework::lanes::{Found, RECORD, Record, SUMS};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::{Cell, CellBlock, Run};
 use finegrain_framework::{Near, Rate, Real, State, View};
 
 use crate::fields::Fields;
 use crate::kernel::Kernel;
-
-/// Lanes are padded to a multiple of this: two full vectors of f64, one of f32.
-pub(crate) const LANES: usize = 16;
 
 /// A quantity of neighbours that terms read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,59 +36,58 @@ impl Quantity {
 /// Where a quantity is stored.
 #[derive(Clone, Copy, Debug)]
 enum Source<T> {
+    /// The coordinate in a direction, as it is seen.
+    Position(usize),
     State(State<T>),
     Rate(Rate<T>),
+    /// The place is not used.
+    Nothing,
 }
 
 /// The quantities that a sweep gathers, with their columns.
+///
+/// A candidate's values lie next to each other in records of a cache line: its position first,
+/// then the quantities in order.
 #[derive(Clone, Debug)]
 pub(crate) struct Gathered<T> {
     position: Vec<State<T>>,
-    sources: Vec<(Quantity, Source<T>)>,
+    /// What the places of all records hold.
+    pages: Vec<Record<Source<T>>>,
+    /// Place of each quantity in the records; `ABSENT` if the sweep does not gather it.
+    places: [usize; Quantity::COUNT],
 }
+
+const ABSENT: usize = usize::MAX;
 
 impl<T: Real> Gathered<T> {
     /// The columns of `quantities`, each once.
     pub fn new(fields: &Fields<T>, mut quantities: Vec<Quantity>) -> Self {
         quantities.sort_unstable();
         quantities.dedup();
-        let sources = quantities
-            .into_iter()
-            .filter_map(|quantity| {
-                let source = match quantity {
-                    Quantity::Velocity(a) => Source::State(fields.velocity[a]),
-                    Quantity::Volume => Source::State(fields.volume),
-                    Quantity::PressureTerm => Source::State(fields.pressure_term),
-                    Quantity::WallDepth => Source::State(fields.wall_depth?),
-                    Quantity::StressTerm(k) => Source::Rate(fields.stress_term[k]),
-                };
-                Some((quantity, source))
-            })
-            .collect();
-        Self { position: fields.position.clone(), sources }
+        let mut sources: Vec<_> = (0..fields.position.len()).map(Source::Position).collect();
+        let mut places = [ABSENT; Quantity::COUNT];
+        for quantity in quantities {
+            let source = match quantity {
+                Quantity::Velocity(a) => Source::State(fields.velocity[a]),
+                Quantity::Volume => Source::State(fields.volume),
+                Quantity::PressureTerm => Source::State(fields.pressure_term),
+                Quantity::WallDepth => match fields.wall_depth {
+                    Some(wall_depth) => Source::State(wall_depth),
+                    None => continue,
+                },
+                Quantity::StressTerm(k) => Source::Rate(fields.stress_term[k]),
+            };
+            places[quantity.index()] = sources.len();
+            sources.push(source);
+        }
+        sources.resize(sources.len().next_multiple_of(RECORD), Source::Nothing);
+        let pages = sources.as_chunks().0.to_vec();
+        Self { position: fields.position.clone(), pages, places }
     }
 
-    fn view<'a>(&self, near: &Near<'a, Cells<T>>, source: Source<T>) -> View<'a, T> {
-        match source {
-            Source::State(column) => near.state(column),
-            Source::Rate(column) => near.rate(column),
-        }
-    }
-}
-
-/// Values of a set of particles, one array a quantity.
-#[derive(Clone, Debug)]
-struct Values<T, const D: usize> {
-    position: [Vec<T>; D],
-    quantities: [Vec<T>; Quantity::COUNT],
-}
-
-impl<T: Real, const D: usize> Default for Values<T, D> {
-    fn default() -> Self {
-        Self {
-            position: std::array::from_fn(|_| Vec::new()),
-            quantities: std::array::from_fn(|_| Vec::new()),
-        }
+    /// What the places of a candidate's records hold.
+    fn pages(&self) -> &[Record<Source<T>>] {
+        &self.pages
     }
 }
 
@@ -99,73 +95,109 @@ impl<T: Real, const D: usize> Default for Values<T, D> {
 #[derive(Clone, Debug)]
 pub(crate) struct Candidates<T, const D: usize> {
     runs: Vec<Run>,
-    values: Values<T, D>,
+    near_cell: Found,
+    position: [Vec<T>; D],
+    /// Per page, one record a candidate.
+    pages: Vec<Vec<Record<T>>>,
     /// Place of the cell's own first particle among the candidates.
     own: usize,
 }
 
 impl<T: Real, const D: usize> Default for Candidates<T, D> {
     fn default() -> Self {
-        Self { runs: Vec::new(), values: Values::default(), own: 0 }
+        Self {
+            runs: Vec::new(),
+            near_cell: Found::default(),
+            position: std::array::from_fn(|_| Vec::new()),
+            pages: Vec::new(),
+            own: 0,
+        }
     }
 }
 
 impl<T: Real, const D: usize> Candidates<T, D> {
-    /// Copies the candidates of `cell`, positions as they are seen from it.
+    /// Collects what lies within `range` of the box around the particles of `cell`, positions as
+    /// they are seen from it.
+    #[inline(always)]
     pub fn collect(
         &mut self,
         gathered: &Gathered<T>,
         near: &Near<'_, Cells<T>>,
         block: &CellBlock<'_, T>,
         cell: Cell,
+        range: T,
     ) {
+        let position: [View<'_, T>; D] = std::array::from_fn(|a| near.state(gathered.position[a]));
+        let own = near.reach(near.id(), cell.span);
+        let bounds: [(T, T); D] = std::array::from_fn(|a| {
+            let start = (T::infinity(), T::neg_infinity());
+            position[a].at(own).iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
+        });
+        // Shifting the box instead of the particles rounds differently: allow for it.
+        let range = range * T::of(1.0 + 1e-5);
         block.candidates(cell, &mut self.runs);
-        self.own = 0;
+        self.position.iter_mut().for_each(Vec::clear);
+        self.pages.resize_with(gathered.pages().len(), Vec::new);
+        self.pages.iter_mut().for_each(Vec::clear);
         for run in &self.runs {
+            let reach = near.reach(run.owner, run.span);
+            let shift = run.shift.map(T::of);
+            let points: [&[T]; D] = std::array::from_fn(|a| position[a].at(reach));
+            let lower = std::array::from_fn(|a| bounds[a].0 - shift[a]);
+            let upper = std::array::from_fn(|a| bounds[a].1 - shift[a]);
+            T::near_box(points, lower, upper, range * range, &mut self.near_cell);
+            let found = self.near_cell.indices();
+            let first = self.position[0].len();
             let is_own = run.shift == [0.0; 3]
                 && run.span.start <= cell.span.start
                 && cell.span.end <= run.span.end;
             if is_own {
-                self.own += cell.span.start - run.span.start;
-                break;
+                let start = (cell.span.start - run.span.start) as u32;
+                self.own = first + found.partition_point(|&i| i < start);
             }
-            self.own += run.span.len();
-        }
-        for (a, (&column, values)) in
-            gathered.position.iter().zip(&mut self.values.position).enumerate()
-        {
-            let view = near.state(column);
-            values.clear();
-            for run in &self.runs {
-                let shift = T::of(run.shift[a]);
-                let seen = view.at(near.reach(run.owner, run.span));
-                values.extend(seen.iter().map(|&x| x + shift));
+            for a in 0..D {
+                let (values, shift) = (points[a], shift[a]);
+                self.position[a].extend(found.iter().map(|&i| values[i as usize] + shift));
             }
-        }
-        for &(quantity, source) in &gathered.sources {
-            let view = gathered.view(near, source);
-            let values = &mut self.values.quantities[quantity.index()];
-            values.clear();
-            for run in &self.runs {
-                values.extend_from_slice(view.at(near.reach(run.owner, run.span)));
+            for (page, sources) in self.pages.iter_mut().zip(gathered.pages()) {
+                let values: Record<&[T]> = std::array::from_fn(|s| match sources[s] {
+                    Source::Position(_) | Source::Nothing => points[0],
+                    Source::State(column) => near.state(column).at(reach),
+                    Source::Rate(column) => near.rate(column).at(reach),
+                });
+                page.resize(first + found.len(), [T::zero(); RECORD]);
+                for (record, &i) in page[first..].iter_mut().zip(found) {
+                    for s in 0..RECORD {
+                        record[s] = values[s][i as usize];
+                    }
+                }
+                for (s, source) in sources.iter().enumerate() {
+                    if let Source::Position(a) = source {
+                        let seen = &self.position[*a][first..];
+                        for (record, &x) in page[first..].iter_mut().zip(seen) {
+                            record[s] = x;
+                        }
+                    }
+                }
             }
         }
     }
 
     /// The cell's own particle number `i`.
     #[inline(always)]
-    pub fn particle(&self, i: usize) -> Particle<T, D> {
+    pub fn particle(&self, gathered: &Gathered<T>, i: usize) -> Particle<T, D> {
         let i = self.own + i;
-        let value = |q: Quantity| self.values.quantities[q.index()].get(i).copied();
+        let value = |quantity: Quantity| match gathered.places[quantity.index()] {
+            ABSENT => T::zero(),
+            place => self.pages[place / RECORD][i][place % RECORD],
+        };
         Particle {
-            position: std::array::from_fn(|a| self.values.position[a][i]),
-            velocity: std::array::from_fn(|a| value(Quantity::Velocity(a)).unwrap_or(T::zero())),
-            volume: value(Quantity::Volume).unwrap_or(T::zero()),
-            pressure_term: value(Quantity::PressureTerm).unwrap_or(T::zero()),
-            wall_depth: value(Quantity::WallDepth).unwrap_or(T::zero()),
-            stress_term: std::array::from_fn(|k| {
-                value(Quantity::StressTerm(k)).unwrap_or(T::zero())
-            }),
+            position: std::array::from_fn(|a| self.position[a][i]),
+            velocity: std::array::from_fn(|a| value(Quantity::Velocity(a))),
+            volume: value(Quantity::Volume),
+            pressure_term: value(Quantity::PressureTerm),
+            wall_depth: value(Quantity::WallDepth),
+            stress_term: std::array::from_fn(|k| value(Quantity::StressTerm(k))),
         }
     }
 }
@@ -188,11 +220,12 @@ pub(crate) struct Neighbours<T, const D: usize> {
     found: Found,
     /// Lanes in use, padding included.
     padded: usize,
-    /// `x_i - x_j`, a direction each.
-    difference: [Vec<T>; D],
     distance_squared: Vec<T>,
     gradient_factor: Vec<T>,
-    values: [Vec<T>; Quantity::COUNT],
+    /// Per page of the candidates' records, a lane for each place. In the first, positions have
+    /// been replaced by `x_i - x_j`.
+    pages: Vec<[Vec<T>; RECORD]>,
+    places: [usize; Quantity::COUNT],
 }
 
 impl<T: Real, const D: usize> Default for Neighbours<T, D> {
@@ -200,10 +233,10 @@ impl<T: Real, const D: usize> Default for Neighbours<T, D> {
         Self {
             found: Found::default(),
             padded: 0,
-            difference: std::array::from_fn(|_| Vec::new()),
             distance_squared: Vec::new(),
             gradient_factor: Vec::new(),
-            values: std::array::from_fn(|_| Vec::new()),
+            pages: Vec::new(),
+            places: [ABSENT; Quantity::COUNT],
         }
     }
 }
@@ -219,21 +252,25 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         kernel: &Kernel<T>,
     ) {
         let support = kernel.support_radius();
-        let positions = std::array::from_fn(|a| &candidates.values.position[a][..]);
+        let positions = std::array::from_fn(|a| &candidates.position[a][..]);
         T::within(positions, particle.position, support * support, &mut self.found);
         let count = self.found.len();
-        let padded = count.next_multiple_of(LANES);
+        let padded = count.next_multiple_of(SUMS);
         self.padded = padded;
-        if self.distance_squared.len() < padded {
-            self.grow(padded);
+        if self.distance_squared.len() < padded || self.pages.len() != gathered.pages().len() {
+            self.grow(padded, gathered);
+        }
+        for (page, records) in self.pages.iter_mut().zip(&candidates.pages) {
+            T::gather(records, &self.found, page);
+            for lane in page {
+                lane[count..padded].fill(T::zero());
+            }
         }
         let distance_squared = &mut self.distance_squared[..padded];
         distance_squared.fill(T::zero());
         for a in 0..D {
-            let difference = &mut self.difference[a][..padded];
-            T::gather(&candidates.values.position[a], &self.found, difference);
             let x = particle.position[a];
-            difference[count..].fill(x);
+            let difference = &mut self.pages[0][a][..padded];
             for (d, r2) in difference.iter_mut().zip(&mut *distance_squared) {
                 *d = x - *d;
                 *r2 = d.mul_add(*d, *r2);
@@ -243,53 +280,51 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         kernel.gradient_factor(distance_squared, &mut self.gradient_factor[..padded]);
         // From here on the padding's distance only has to be finite.
         distance_squared[count..].fill(T::zero());
-        for &(quantity, _) in &gathered.sources {
-            let q = quantity.index();
-            let values = &mut self.values[q][..padded];
-            T::gather(&candidates.values.quantities[q], &self.found, values);
-            values[count..].fill(T::zero());
-        }
     }
 
     #[cold]
-    fn grow(&mut self, length: usize) {
+    fn grow(&mut self, length: usize, gathered: &Gathered<T>) {
+        self.places = gathered.places;
+        self.pages.resize_with(gathered.pages().len(), || std::array::from_fn(|_| Vec::new()));
         let all = self
-            .difference
+            .pages
             .iter_mut()
-            .chain([&mut self.distance_squared, &mut self.gradient_factor])
-            .chain(&mut self.values);
+            .flatten()
+            .chain([&mut self.distance_squared, &mut self.gradient_factor]);
         for lanes in all {
-            lanes.resize(length, T::zero());
+            lanes.resize(length.max(lanes.len()), T::zero());
         }
-    }
-
-    /// Number of neighbours, the particle itself included.
-    #[inline(always)]
-    pub fn count(&self) -> usize {
-        self.found.len()
     }
 
     /// `x_i - x_j` along direction `a`.
     #[inline(always)]
-    pub fn difference(&self, a: usize) -> &[[T; LANES]] {
-        self.difference[a][..self.padded].as_chunks().0
+    pub fn difference(&self, a: usize) -> &[T] {
+        &self.pages[0][a][..self.padded]
     }
 
     /// `|x_i - x_j|^2`.
     #[inline(always)]
-    pub fn distance_squared(&self) -> &[[T; LANES]] {
-        self.distance_squared[..self.padded].as_chunks().0
+    pub fn distance_squared(&self) -> &[T] {
+        &self.distance_squared[..self.padded]
     }
 
     /// `F`, with `grad_i W_ij = F (x_i - x_j)`.
     #[inline(always)]
-    pub fn gradient_factor(&self) -> &[[T; LANES]] {
-        self.gradient_factor[..self.padded].as_chunks().0
+    pub fn gradient_factor(&self) -> &[T] {
+        &self.gradient_factor[..self.padded]
+    }
+
+    /// Depth of the neighbours below the surface of a body, if there are bodies.
+    #[inline(always)]
+    pub fn wall_depth(&self) -> Option<&[T]> {
+        (self.places[Quantity::WallDepth.index()] != ABSENT)
+            .then(|| self.values(Quantity::WallDepth))
     }
 
     /// A gathered quantity of the neighbours.
     #[inline(always)]
-    pub fn values(&self, quantity: Quantity) -> &[[T; LANES]] {
-        self.values[quantity.index()][..self.padded].as_chunks().0
+    pub fn values(&self, quantity: Quantity) -> &[T] {
+        let place = self.places[quantity.index()];
+        &self.pages[place / RECORD][place % RECORD][..self.padded]
     }
 }

@@ -8,10 +8,10 @@ use finegrain_framework::{ColumnId, Domain, Fault, Handle, Moment, Near, RateSta
 use crate::fields::{Fields, symmetric};
 use crate::kernel::Kernel;
 use crate::neighbourhood::{Candidates, Gathered, Neighbours, Particle};
-use crate::term::Term;
 use crate::term::continuity::continuity;
 use crate::term::momentum::{pressure_gradient, stress_divergence};
-use crate::wall::NoSlip;
+use crate::term::{Term, Work};
+use crate::wall::{Extrapolation, NoSlip};
 
 /// One sweep over all pairs, in `D` dimensions.
 #[derive(Clone, Debug)]
@@ -32,11 +32,16 @@ pub(crate) struct Sweep<T, const D: usize> {
 pub(crate) struct Scratch<T, const D: usize> {
     candidates: Candidates<T, D>,
     neighbours: Neighbours<T, D>,
+    work: Work<T>,
 }
 
 impl<T: Real, const D: usize> Default for Scratch<T, D> {
     fn default() -> Self {
-        Self { candidates: Candidates::default(), neighbours: Neighbours::default() }
+        Self {
+            candidates: Candidates::default(),
+            neighbours: Neighbours::default(),
+            work: Work::default(),
+        }
     }
 }
 
@@ -61,6 +66,10 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         self.terms.iter().any(wanted)
     }
 
+    fn sees_velocity_in_bodies(&self) -> bool {
+        self.has(|t| matches!(t, Term::StrainRate(_) | Term::MorrisViscosity(_)))
+    }
+
     fn writes_density_rate(&self) -> bool {
         self.has(|t| matches!(t, Term::Continuity))
     }
@@ -82,14 +91,14 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         written: &mut Written<'_, T>,
         scratch: &mut Scratch<T, D>,
     ) {
-        let Scratch { candidates, neighbours } = scratch;
+        let Scratch { candidates, neighbours, work } = scratch;
         let first = near.spans()[0].start;
         for cell in block.cells() {
-            candidates.collect(&self.gathered, near, block, cell);
+            candidates.collect(&self.gathered, near, block, cell, self.kernel.support_radius());
             for k in 0..cell.span.len() {
-                let particle = candidates.particle(k);
+                let particle = candidates.particle(&self.gathered, k);
                 neighbours.gather(&self.gathered, candidates, &particle, &self.kernel);
-                let sums = self.sum(&particle, neighbours);
+                let sums = self.sum(&particle, neighbours, work);
                 written.store(cell.span.start - first + k, &sums);
             }
         }
@@ -97,24 +106,13 @@ impl<T: Real, const D: usize> Sweep<T, D> {
 
     /// All terms for one particle.
     #[inline(always)]
-    fn sum(&self, i: &Particle<T, D>, near: &Neighbours<T, D>) -> Sums<T, D> {
+    fn sum(&self, i: &Particle<T, D>, near: &Neighbours<T, D>, work: &mut Work<T>) -> Sums<T, D> {
         let mass = self.particle_mass;
         let is_wall = i.wall_depth > T::zero();
-        let has_walls = self.no_slip.is_some();
-        // How much of v_i - v_j a wall particle at a depth adds to it: depth_j / distance_i, so
-        // that the velocity falls linearly through zero at the surface.
-        let (most, per_depth) = match &self.no_slip {
-            Some(no_slip) if !is_wall => {
-                let mut x = [0.0; 3];
-                for a in 0..D {
-                    x[a] = i.position[a].as_f64();
-                }
-                let distance = T::of(no_slip.walls.signed_distance(x));
-                (no_slip.most, T::one() / distance.max(no_slip.least_distance))
-            }
-            _ => (T::zero(), T::zero()),
+        let no_slip = match &self.no_slip {
+            Some(no_slip) if !is_wall && self.sees_velocity_in_bodies() => no_slip.at(i.position),
+            _ => Extrapolation::none(),
         };
-        let extrapolation = move |depth: T| (depth * per_depth).min(most);
         let mut sums = Sums {
             density_rate: T::zero(),
             acceleration: self.body_acceleration.unwrap_or([T::zero(); D]),
@@ -124,23 +122,23 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         for term in &self.terms {
             let added = match term {
                 Term::Continuity => {
-                    sums.density_rate = continuity(i, near, mass);
+                    sums.density_rate = continuity(i, near, work, mass);
                     continue;
                 }
                 Term::StrainRate(term) => {
                     let density = mass / i.volume;
-                    sums.stress_term = term.stress_term(i, near, density, extrapolation, has_walls);
+                    sums.stress_term = term.stress_term(i, near, work, density, &no_slip);
                     continue;
                 }
                 Term::Energy(term) => {
-                    sums.energy_rate = term.rate(i, near, mass, mass / i.volume);
+                    sums.energy_rate = term.rate(i, near, work, mass, mass / i.volume);
                     continue;
                 }
-                Term::PressureGradient => pressure_gradient(i, near, mass),
-                Term::StressDivergence => stress_divergence(i, near, mass, has_walls),
+                Term::PressureGradient => pressure_gradient(i, near, work, mass),
+                Term::StressDivergence => stress_divergence(i, near, work, mass),
                 Term::MorrisViscosity(term) => {
                     let density = mass / i.volume;
-                    term.acceleration(i, near, density, extrapolation, has_walls)
+                    term.acceleration(i, near, work, density, &no_slip)
                 }
             };
             for a in 0..D {

@@ -4,6 +4,7 @@
 //! 1994). For the viscous terms they are given the velocity that a linear profile through zero at
 //! the surface has where they are (Morris, Fox & Zhu 1997, section 3.4).
 
+use finegrain_framework::Real;
 use finegrain_framework::shape::Shape;
 use finegrain_framework::space::cells::Region;
 
@@ -52,7 +53,7 @@ impl Walls {
     }
 }
 
-/// No-slip condition: how much of the velocity difference to a wall particle is added to it.
+/// No-slip condition on the surfaces of all bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct NoSlip<T> {
     pub walls: Walls,
@@ -61,4 +62,41 @@ pub(crate) struct NoSlip<T> {
     pub most: T,
     /// No fluid particle counts as nearer to the surface than this, m.
     pub least_distance: T,
+}
+
+impl<T: Real> NoSlip<T> {
+    /// How a fluid particle at `position` sees the velocities in bodies.
+    pub fn at<const D: usize>(&self, position: [T; D]) -> Extrapolation<T> {
+        let mut x = [0.0; 3];
+        for (x, position) in x.iter_mut().zip(position) {
+            *x = position.as_f64();
+        }
+        let distance = T::of(self.walls.signed_distance(x)).max(self.least_distance);
+        Extrapolation { most: self.most, per_depth: T::one() / distance }
+    }
+}
+
+/// How one particle sees the velocities of wall particles: a velocity that falls linearly through
+/// zero at the surface differs from its own by `1 + depth_j / distance_i` times the difference to
+/// a particle at rest, at most `beta_max` times.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extrapolation<T> {
+    most: T,
+    per_depth: T,
+}
+
+impl<T: Real> Extrapolation<T> {
+    /// Wall particles are seen at rest.
+    pub fn none() -> Self {
+        Self { most: T::zero(), per_depth: T::zero() }
+    }
+
+    /// Multiplies the weights of velocity differences accordingly.
+    #[inline(always)]
+    pub fn amplify(&self, weights: &mut [T], wall_depth: Option<&[T]>) {
+        let Self { most, per_depth } = *self;
+        for (weight, &depth) in weights.iter_mut().zip(wall_depth.into_iter().flatten()) {
+            *weight *= T::one() + (depth * per_depth).min(most);
+        }
+    }
 }

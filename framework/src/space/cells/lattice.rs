@@ -18,15 +18,15 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// Cells over the box from `lower` with sides `length`, none smaller than
-    /// `range / subdivision` unless the box is.
+    /// Cells over the box from `lower` with sides `length`, each side as long as `range` or a
+    /// little longer. Across a thin box they are up to half as long: with one or two cells
+    /// around it everything would be a candidate of everything.
     pub fn new(
         lower: [f64; 3],
         length: [f64; 3],
         periodic: [bool; 3],
         dims: usize,
         range: f64,
-        subdivision: usize,
     ) -> Self {
         let mut lattice = Self {
             lower,
@@ -37,7 +37,8 @@ impl Lattice {
             block: [1; 3],
         };
         for a in 0..dims {
-            let fit = (length[a] * subdivision as f64 / range).floor();
+            let ranges = length[a] / range;
+            let fit = if ranges < 3.0 { (2.0 * ranges).floor() } else { ranges.floor() };
             // More cells than an i32 counts would be a particle that has flown away; the keys
             // still fit 64 bits.
             let counts = fit.clamp(1.0, 1_000_000.0);
@@ -46,7 +47,7 @@ impl Lattice {
             if periodic[a] {
                 lattice.period[a] = length[a];
             } else {
-                lattice.side[a] = lattice.side[a].max(range / subdivision as f64);
+                lattice.side[a] = lattice.side[a].max(0.5 * range);
             }
             lattice.reach[a] = (range / lattice.side[a]).ceil() as i64;
         }
@@ -154,7 +155,7 @@ mod tests {
 
     #[test]
     fn keys_are_invertible() {
-        let mut lattice = Lattice::new([0.0; 3], [7.0, 5.0, 4.0], [true; 3], 3, 1.0, 1);
+        let mut lattice = Lattice::new([0.0; 3], [7.0, 5.0, 4.0], [true; 3], 3, 1.0);
         lattice.block = [2, 3, 1];
         for k in 0..4 {
             for j in 0..5 {
@@ -170,9 +171,9 @@ mod tests {
 
     #[test]
     fn a_thin_box_is_seen_through_several_images() {
-        let lattice = Lattice::new([0.0; 3], [8.0, 0.4, 1.5], [true; 3], 3, 1.0, 1);
-        assert_eq!(lattice.counts, [8, 1, 1]);
-        assert_eq!(lattice.reach, [1, 3, 1]);
+        let lattice = Lattice::new([0.0; 3], [8.0, 0.4, 1.5], [true; 3], 3, 1.0);
+        assert_eq!(lattice.counts, [8, 1, 3]);
+        assert_eq!(lattice.reach, [1, 3, 2]);
         assert_eq!(lattice.image(1, -3), Some((0, -3.0 * 0.4)));
     }
 }

@@ -117,7 +117,7 @@ impl<T: Real> Cells<T> {
             .map(|a| columns.state(&format!("sorted_at_{}", ["x", "y", "z"][a])))
             .collect();
         Ok(Self {
-            lattice: Lattice::new([0.0; 3], [1.0; 3], [false; 3], 0, range, 1),
+            lattice: Lattice::new([0.0; 3], [1.0; 3], [false; 3], 0, range),
             region,
             range,
             skin,
@@ -210,6 +210,7 @@ impl<T: Real> Cells<T> {
             }
             let (lower, upper) = (self.region.lower[a], self.region.upper[a]);
             let length = upper - lower;
+            let first = first_inside(lower);
             team.for_each_chunk(values, 16_384, |_, chunk| {
                 for value in chunk {
                     let x = value.as_f64();
@@ -217,11 +218,8 @@ impl<T: Real> Cells<T> {
                         let wrapped = x - ((x - lower) / length).floor() * length;
                         // Rounding may lead to the upper end, which is the lower end.
                         let wrapped = T::of(wrapped);
-                        *value = if (lower..upper).contains(&wrapped.as_f64()) {
-                            wrapped
-                        } else {
-                            T::of(lower)
-                        };
+                        let is_inside = (lower..upper).contains(&wrapped.as_f64());
+                        *value = if is_inside { wrapped } else { first };
                     }
                 }
             });
@@ -248,8 +246,12 @@ impl<T: Real> Cells<T> {
             lower[a] = low;
             length[a] = high - low;
         }
+        // Positions are put into cells with a rounding error, which must not part two particles
+        // that are exactly the range away from one another.
+        let size = (0..dims).map(|a| lower[a].abs() + length[a]).fold(0.0, f64::max);
         let range = self.range + self.skin;
-        let mut lattice = Lattice::new(lower, length, periodic, dims, range, 1);
+        let range = range + (8.0 * f64::EPSILON * size).min(range);
+        let mut lattice = Lattice::new(lower, length, periodic, dims, range);
         // Particles a cell holds where there are any: judged from the whole box, which is an
         // underestimate for a sparse one; blocks are then a little large.
         let cells: f64 = lattice.counts.iter().map(|&n| n as f64).product();
@@ -339,6 +341,12 @@ impl<T: Real> Cells<T> {
     fn first_point(&self, cell: usize, points: usize) -> usize {
         self.cells.get(cell).map_or(points, |&(_, first)| first as usize)
     }
+}
+
+/// The number of type `T` that is at least `lower` and next to it.
+fn first_inside<T: Real>(lower: f64) -> T {
+    let first = T::of(lower);
+    if first.as_f64() < lower { first + T::epsilon() * first.abs() } else { first }
 }
 
 /// Position number `i`, zero in directions that do not exist.

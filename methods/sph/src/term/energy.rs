@@ -2,9 +2,9 @@
 
 use finegrain_framework::Real;
 
-use super::LaneSum;
+use super::Work;
 use super::momentum::component;
-use crate::neighbourhood::{LANES, Neighbours, Particle, Quantity};
+use crate::neighbourhood::{Neighbours, Particle, Quantity};
 
 /// Constants of the term.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,25 +21,28 @@ impl<T: Real> Energy<T> {
         &self,
         i: &Particle<T, D>,
         near: &Neighbours<T, D>,
+        work: &mut Work<T>,
         mass: T,
         density: T,
     ) -> T {
+        let factor = near.gradient_factor();
+        let [weight, jump] = work.lanes(factor.len());
         let pressure_term = near.values(Quantity::PressureTerm);
-        let mut sum = LaneSum::zero();
-        for a in 0..D {
-            let difference = near.difference(a);
-            let velocity = near.values(Quantity::Velocity(a));
-            for (k, factor) in near.gradient_factor().iter().enumerate() {
-                for l in 0..LANES {
-                    let weight = factor[l] * (i.pressure_term + pressure_term[k][l]);
-                    let jump = i.velocity[a] - velocity[k][l];
-                    sum.add(l, weight * jump, difference[k][l]);
-                }
-            }
+        for ((weight, &factor), &p) in weight.iter_mut().zip(factor).zip(pressure_term) {
+            *weight = factor * (i.pressure_term + p);
         }
-        let work = T::of(0.5) * mass * sum.total();
+        let mut sum = T::zero();
+        for a in 0..D {
+            let (v, dx) = (near.values(Quantity::Velocity(a)), near.difference(a));
+            for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
+                *jump = (i.velocity[a] - v) * dx;
+            }
+            sum += T::dot(weight, jump);
+        }
+        let half = T::of(0.5);
+        let compression = half * mass * sum;
         if self.dynamic_viscosity == T::zero() {
-            return work;
+            return compression;
         }
         // stress_term = mu epsilon / rho^2.
         let mut contraction = T::zero();
@@ -50,6 +53,6 @@ impl<T: Real> Energy<T> {
             }
         }
         let rho3 = density * density * density;
-        work + contraction * rho3 / (T::of(2.0) * self.dynamic_viscosity)
+        compression + half * contraction * rho3 / self.dynamic_viscosity
     }
 }

@@ -12,7 +12,7 @@ pub(crate) mod viscosity;
 use finegrain_framework::Real;
 use serde::{Deserialize, Serialize};
 
-use crate::neighbourhood::{LANES, Quantity};
+use crate::neighbourhood::Quantity;
 
 /// Viscous term of the momentum equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,34 +67,19 @@ impl<T: Real> Term<T> {
     }
 }
 
-/// A sum over neighbours, one partial sum a lane: the order of additions does not depend on the
-/// instruction set.
-#[derive(Clone, Copy)]
-pub(crate) struct LaneSum<T>([T; LANES]);
+/// Lanes that a term works with: a weight for each neighbour.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Work<T>([Vec<T>; 2]);
 
-impl<T: Real> LaneSum<T> {
+impl<T: Real> Work<T> {
+    /// Two work lanes of `length` neighbours, holding whatever they held.
     #[inline(always)]
-    pub fn zero() -> Self {
-        Self([T::zero(); LANES])
-    }
-
-    /// Adds `a * b` to lane `l`.
-    #[inline(always)]
-    pub fn add(&mut self, l: usize, a: T, b: T) {
-        self.0[l] = a.mul_add(b, self.0[l]);
-    }
-
-    /// The sum of all lanes, by halves.
-    #[inline(always)]
-    pub fn total(self) -> T {
-        let mut sums = self.0;
-        let mut half = LANES / 2;
-        while half > 0 {
-            for l in 0..half {
-                sums[l] += sums[l + half];
-            }
-            half /= 2;
+    pub fn lanes(&mut self, length: usize) -> [&mut [T]; 2] {
+        let [first, second] = &mut self.0;
+        if first.len() < length {
+            first.resize(length, T::zero());
+            second.resize(length, T::zero());
         }
-        sums[0]
+        [&mut first[..length], &mut second[..length]]
     }
 }

@@ -3,32 +3,28 @@
 
 use finegrain_framework::Real;
 
-use super::LaneSum;
-use crate::fields::symmetric;
-use crate::neighbourhood::{LANES, Neighbours, Particle, Quantity};
+use super::Work;
+use crate::neighbourhood::{Neighbours, Particle, Quantity};
 
 /// `-sum_j m_j (p_i / rho_i^2 + p_j / rho_j^2) grad_i W_ij`, m/s^2, for equal masses `m`.
 #[inline(always)]
 pub(crate) fn pressure_gradient<T: Real, const D: usize>(
     i: &Particle<T, D>,
     near: &Neighbours<T, D>,
+    work: &mut Work<T>,
     mass: T,
 ) -> [T; D] {
+    let factor = near.gradient_factor();
+    let [weight, _] = work.lanes(factor.len());
     let pressure_term = near.values(Quantity::PressureTerm);
-    let mut sums = [LaneSum::zero(); D];
-    for (k, factor) in near.gradient_factor().iter().enumerate() {
-        let mut weight = [T::zero(); LANES];
-        for l in 0..LANES {
-            weight[l] = factor[l] * (i.pressure_term + pressure_term[k][l]);
-        }
-        for a in 0..D {
-            let difference = &near.difference(a)[k];
-            for l in 0..LANES {
-                sums[a].add(l, weight[l], difference[l]);
-            }
-        }
+    for ((weight, &factor), &p) in weight.iter_mut().zip(factor).zip(pressure_term) {
+        *weight = factor * (i.pressure_term + p);
     }
-    sums.map(|sum| -mass * sum.total())
+    let mut acceleration = [T::zero(); D];
+    for (a, acceleration) in acceleration.iter_mut().enumerate() {
+        *acceleration = -mass * T::dot(weight, near.difference(a));
+    }
+    acceleration
 }
 
 /// Place of component (a, b) of a symmetric tensor in the order xx, xy, yy, xz, yz, zz.
@@ -48,30 +44,36 @@ pub(crate) const fn component(a: usize, b: usize) -> usize {
 pub(crate) fn stress_divergence<T: Real, const D: usize>(
     i: &Particle<T, D>,
     near: &Neighbours<T, D>,
+    work: &mut Work<T>,
     mass: T,
-    has_walls: bool,
 ) -> [T; D] {
-    let mut sums = [LaneSum::zero(); D];
-    let no_depth = [T::zero(); LANES];
-    for (k, factor) in near.gradient_factor().iter().enumerate() {
-        let depth = if has_walls { &near.values(Quantity::WallDepth)[k] } else { &no_depth };
-        let mut stress = [[T::zero(); LANES]; 6];
-        for c in 0..symmetric(D) {
-            let seen = &near.values(Quantity::StressTerm(c))[k];
-            for l in 0..LANES {
-                let own = i.stress_term[c];
-                let other = if depth[l] > T::zero() { own } else { seen[l] };
-                stress[c][l] = factor[l] * (own + other);
-            }
-        }
-        for a in 0..D {
-            for b in 0..D {
-                let difference = &near.difference(b)[k];
-                for l in 0..LANES {
-                    sums[a].add(l, stress[component(a, b)][l], difference[l]);
+    let factor = near.gradient_factor();
+    let [weight, _] = work.lanes(factor.len());
+    let mut acceleration = [T::zero(); D];
+    for a in 0..D {
+        for b in 0..=a {
+            let c = component(a, b);
+            let own = i.stress_term[c];
+            let stress = near.values(Quantity::StressTerm(c));
+            match near.wall_depth() {
+                Some(depth) => {
+                    let lanes = weight.iter_mut().zip(factor).zip(stress).zip(depth);
+                    for (((weight, &factor), &stress), &depth) in lanes {
+                        let seen = if depth > T::zero() { own } else { stress };
+                        *weight = factor * (own + seen);
+                    }
                 }
+                None => {
+                    for ((weight, &factor), &stress) in weight.iter_mut().zip(factor).zip(stress) {
+                        *weight = factor * (own + stress);
+                    }
+                }
+            }
+            acceleration[a] += mass * T::dot(weight, near.difference(b));
+            if a != b {
+                acceleration[b] += mass * T::dot(weight, near.difference(a));
             }
         }
     }
-    sums.map(|sum| mass * sum.total())
+    acceleration
 }

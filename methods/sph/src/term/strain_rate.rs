@@ -2,9 +2,10 @@
 
 use finegrain_framework::Real;
 
-use super::LaneSum;
+use super::Work;
 use super::momentum::component;
-use crate::neighbourhood::{LANES, Neighbours, Particle, Quantity};
+use crate::neighbourhood::{Neighbours, Particle, Quantity};
+use crate::wall::Extrapolation;
 
 /// Constants of the term.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,34 +25,27 @@ impl<T: Real> StrainRate<T> {
         &self,
         i: &Particle<T, D>,
         near: &Neighbours<T, D>,
+        work: &mut Work<T>,
         density: T,
-        extrapolation: impl Fn(T) -> T,
-        has_walls: bool,
+        no_slip: &Extrapolation<T>,
     ) -> [T; 6] {
-        let mut sums = [[LaneSum::zero(); D]; D];
+        let factor = near.gradient_factor();
+        let [weight, jump] = work.lanes(factor.len());
         let volume = near.values(Quantity::Volume);
-        let no_depth = [T::zero(); LANES];
-        for (k, factor) in near.gradient_factor().iter().enumerate() {
-            let depth = if has_walls { &near.values(Quantity::WallDepth)[k] } else { &no_depth };
-            let mut weight = [T::zero(); LANES];
-            for l in 0..LANES {
-                weight[l] = factor[l] * volume[k][l] * (T::one() + extrapolation(depth[l]));
+        for ((weight, &factor), &volume) in weight.iter_mut().zip(factor).zip(volume) {
+            *weight = factor * volume;
+        }
+        no_slip.amplify(weight, near.wall_depth());
+        let mut gradient = [[T::zero(); D]; D];
+        for a in 0..D {
+            let v = near.values(Quantity::Velocity(a));
+            for ((jump, &weight), &v) in jump.iter_mut().zip(&*weight).zip(v) {
+                *jump = weight * (v - i.velocity[a]);
             }
-            for a in 0..D {
-                let velocity = &near.values(Quantity::Velocity(a))[k];
-                let mut jump = [T::zero(); LANES];
-                for l in 0..LANES {
-                    jump[l] = weight[l] * (velocity[l] - i.velocity[a]);
-                }
-                for b in 0..D {
-                    let difference = &near.difference(b)[k];
-                    for l in 0..LANES {
-                        sums[a][b].add(l, jump[l], difference[l]);
-                    }
-                }
+            for b in 0..D {
+                gradient[a][b] = T::dot(jump, near.difference(b));
             }
         }
-        let gradient = sums.map(|row| row.map(|sum| sum.total()));
         let divergence = (0..D).fold(T::zero(), |sum, a| sum + gradient[a][a]);
         let scale = self.dynamic_viscosity / (density * density);
         let mut stress = [T::zero(); 6];

@@ -2,8 +2,9 @@
 
 use finegrain_framework::Real;
 
-use super::LaneSum;
-use crate::neighbourhood::{LANES, Neighbours, Particle, Quantity};
+use super::Work;
+use crate::neighbourhood::{Neighbours, Particle, Quantity};
+use crate::wall::Extrapolation;
 
 /// Constants of the term.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,37 +19,34 @@ impl<T: Real> Morris<T> {
     /// `sum_j m_j (mu_i + mu_j) / (rho_i rho_j) (x_ij . grad_i W_ij) / (r_ij^2 + eta^2) v_ij`, m/s^2
     /// (Morris et al. 1997, eq. 22).
     ///
-    /// Wall particles are seen with the velocity that the no-slip condition gives them:
-    /// `v_ij` grows by `1 + extrapolation(depth)`.
+    /// Wall particles are seen with the velocity that the no-slip condition gives them.
     #[inline(always)]
     pub fn acceleration<const D: usize>(
         &self,
         i: &Particle<T, D>,
         near: &Neighbours<T, D>,
+        work: &mut Work<T>,
         density: T,
-        extrapolation: impl Fn(T) -> T,
-        has_walls: bool,
+        no_slip: &Extrapolation<T>,
     ) -> [T; D] {
-        let mut sums = [LaneSum::zero(); D];
-        let volume = near.values(Quantity::Volume);
-        let no_depth = [T::zero(); LANES];
-        for (k, factor) in near.gradient_factor().iter().enumerate() {
-            let depth = if has_walls { &near.values(Quantity::WallDepth)[k] } else { &no_depth };
-            let distance_squared = &near.distance_squared()[k];
-            let mut weight = [T::zero(); LANES];
-            for l in 0..LANES {
-                let r2 = distance_squared[l];
-                let slope = factor[l] * r2 / (r2 + self.eta_squared);
-                weight[l] = slope * volume[k][l] * (T::one() + extrapolation(depth[l]));
-            }
-            for a in 0..D {
-                let velocity = &near.values(Quantity::Velocity(a))[k];
-                for l in 0..LANES {
-                    sums[a].add(l, weight[l], i.velocity[a] - velocity[l]);
-                }
-            }
+        let factor = near.gradient_factor();
+        let [weight, jump] = work.lanes(factor.len());
+        let (volume, distance_squared) = (near.values(Quantity::Volume), near.distance_squared());
+        let eta_squared = self.eta_squared;
+        for (((weight, &factor), &volume), &r2) in
+            weight.iter_mut().zip(factor).zip(volume).zip(distance_squared)
+        {
+            *weight = factor * volume * (r2 / (r2 + eta_squared));
         }
+        no_slip.amplify(weight, near.wall_depth());
         let scale = T::of(2.0) * self.dynamic_viscosity / density;
-        sums.map(|sum| scale * sum.total())
+        let mut acceleration = [T::zero(); D];
+        for (a, acceleration) in acceleration.iter_mut().enumerate() {
+            for (jump, &v) in jump.iter_mut().zip(near.values(Quantity::Velocity(a))) {
+                *jump = i.velocity[a] - v;
+            }
+            *acceleration = scale * T::dot(weight, jump);
+        }
+        acceleration
     }
 }

@@ -1,0 +1,429 @@
+//! Cells find exactly the pairs that a search through everybody and all periodic images finds.
+
+mod models;
+
+use finegrain_framework::space::Cells;
+use finegrain_framework::space::cells::{CellsOptions, Region, Run};
+use finegrain_framework::*;
+use models::random::Random;
+
+/// A particle, another one, and the image that it is seen through.
+type Pair = (usize, usize, [i64; 3]);
+
+/// Particles in cells.
+struct Case<T> {
+    columns: Columns,
+    position: Vec<State<T>>,
+    /// Where in the order before sorting a particle was.
+    number: State<u32>,
+    cells: Cells<T>,
+    options: CellsOptions,
+}
+
+impl<T: Real> Case<T> {
+    fn new(options: CellsOptions, points: &[Vec<f64>]) -> Self {
+        let dims = options.region.lower.len();
+        let mut columns = Columns::new(points.len());
+        let position: Vec<State<T>> =
+            (0..dims).map(|a| columns.state(&format!("position_{a}"))).collect();
+        let number = columns.state("number");
+        for (a, &position) in position.iter().enumerate() {
+            let values = columns.values_mut(position);
+            values.iter_mut().zip(points).for_each(|(x, point)| *x = T::of(point[a]));
+        }
+        let cells = Cells::new(&mut columns, &position, options.clone()).unwrap();
+        Self { columns, position, number, cells, options }
+    }
+
+    fn sort(&mut self, workers: usize) -> Result<(), Fault> {
+        let number = self.columns.values_mut(self.number);
+        number.iter_mut().zip(0..).for_each(|(number, i)| *number = i);
+        self.cells.sort(&mut self.columns, &mut Team::new(workers).unwrap())
+    }
+
+    fn dims(&self) -> usize {
+        self.position.len()
+    }
+
+    fn period(&self, a: usize) -> f64 {
+        let Region { lower, upper, periodic } = &self.options.region;
+        if periodic.get(a) == Some(&true) { upper[a] - lower[a] } else { 0.0 }
+    }
+
+    /// Whether `i` sees `j`, shifted, within range.
+    fn in_range(&self, i: usize, j: usize, shift: [f64; 3]) -> bool {
+        let squares = (0..self.dims()).map(|a| {
+            let x = self.columns.values(self.position[a]);
+            let d = x[i].as_f64() - (x[j].as_f64() + shift[a]);
+            d * d
+        });
+        squares.sum::<f64>() <= self.options.range * self.options.range
+    }
+
+    fn pairs_by_search(&self) -> Vec<Pair> {
+        let images: [i64; 3] = std::array::from_fn(|a| {
+            let period = self.period(a);
+            // Positions may have drifted out of the box by half a skin.
+            let far = self.options.range + self.options.skin;
+            if period > 0.0 { (far / period).ceil() as i64 + 1 } else { 0 }
+        });
+        let mut pairs = Vec::new();
+        for i in 0..self.columns.points() {
+            for j in 0..self.columns.points() {
+                for z in -images[2]..=images[2] {
+                    for y in -images[1]..=images[1] {
+                        for x in -images[0]..=images[0] {
+                            let image = [x, y, z];
+                            let shift = std::array::from_fn(|a| image[a] as f64 * self.period(a));
+                            if self.in_range(i, j, shift) {
+                                pairs.push((i, j, image));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        pairs
+    }
+
+    /// What the stages see, in the order in which they see it.
+    fn runs(&self) -> Vec<(usize, Span, Vec<Run>)> {
+        let partition = self.cells.partition();
+        let mut all = Vec::new();
+        for id in 0..partition.len() {
+            let block = self.cells.sub_domain(id);
+            let mut points = 0;
+            for cell in block.cells() {
+                let mut runs = Vec::new();
+                block.candidates(cell, &mut runs);
+                for run in &runs {
+                    assert!(partition.sees(id, run.owner));
+                    let [span] = partition.spans(run.owner) else { panic!("several spans") };
+                    assert!(span.start <= run.span.start && run.span.end <= span.end);
+                }
+                points += cell.span.len();
+                all.push((id, cell.span, runs));
+            }
+            assert_eq!(points, block.points(), "a block's cells hold its particles");
+        }
+        all
+    }
+
+    fn pairs_by_cells(&self) -> Vec<Pair> {
+        let mut pairs = Vec::new();
+        for (_, span, runs) in self.runs() {
+            for i in span.range() {
+                for run in &runs {
+                    for j in run.span.range().filter(|&j| self.in_range(i, j, run.shift)) {
+                        let image = std::array::from_fn(|a| match self.period(a) {
+                            0.0 => 0,
+                            period => (run.shift[a] / period).round() as i64,
+                        });
+                        pairs.push((i, j, image));
+                    }
+                }
+            }
+        }
+        pairs.sort_unstable();
+        pairs
+    }
+
+    #[track_caller]
+    fn assert_all_pairs_found(&self, what: &str) {
+        let (mut expected, found) = (self.pairs_by_search(), self.pairs_by_cells());
+        expected.sort_unstable();
+        let missed: Vec<_> =
+            expected.iter().filter(|pair| found.binary_search(pair).is_err()).take(5).collect();
+        assert!(missed.is_empty(), "{what}: missed {missed:?} of {}", expected.len());
+        assert!(found == expected, "{what}: {} pairs instead of {}", found.len(), expected.len());
+    }
+}
+
+fn options(lower: &[f64], upper: &[f64], periodic: &[bool], range: f64, skin: f64) -> CellsOptions {
+    let region =
+        Region { lower: lower.to_vec(), upper: upper.to_vec(), periodic: periodic.to_vec() };
+    CellsOptions { region, range, skin, block_points: 6 }
+}
+
+#[track_caller]
+fn assert_found<T: Real>(what: &str, options: &CellsOptions, points: &[Vec<f64>]) {
+    let mut case = Case::<T>::new(options.clone(), points);
+    case.sort(2).unwrap();
+    case.assert_all_pairs_found(what);
+}
+
+#[track_caller]
+fn assert_found_in_both(what: &str, options: &CellsOptions, points: &[Vec<f64>]) {
+    assert_found::<f64>(&format!("{what}, f64"), options, points);
+    assert_found::<f32>(&format!("{what}, f32"), options, points);
+}
+
+fn scattered(random: &mut Random, points: usize, lower: &[f64], upper: &[f64]) -> Vec<Vec<f64>> {
+    let one = |random: &mut Random| {
+        lower.iter().zip(upper).map(|(l, u)| l + random.unit() * (u - l)).collect()
+    };
+    (0..points).map(|_| one(random)).collect()
+}
+
+#[test]
+fn random_boxes() {
+    for seed in 0..600 {
+        let random = &mut Random(seed);
+        let dims = 1 + random.below(3);
+        let lower: Vec<f64> = (0..dims).map(|_| 4.0 * (random.unit() - 0.5)).collect();
+        // From a third of the range to several ranges: thin boxes and roomy ones.
+        let upper: Vec<f64> = lower.iter().map(|l| l + 0.3 * 20f64.powf(random.unit())).collect();
+        let periodic: Vec<bool> = (0..dims).map(|_| random.one_in(2)).collect();
+        let skin = if random.one_in(2) { 0.0 } else { 0.5 * random.unit() };
+        let mut options = options(&lower, &upper, &periodic, 1.0, skin);
+        options.block_points = 1 + random.below(12);
+        let points = random.below(60);
+        // Some lie outside the box: periodic ones are wrapped, open ones stay.
+        let outside = |x: f64| x + if seed % 5 == 0 { 30.0 * (x - lower[0]) } else { 0.0 };
+        let mut points = scattered(random, points, &lower, &upper);
+        points.iter_mut().for_each(|x| x[0] = outside(x[0]));
+        assert_found_in_both(&format!("seed {seed}"), &options, &points);
+    }
+}
+
+/// The channel of Holmes et al.: two support radii are more than its width.
+#[test]
+fn boxes_thinner_than_two_ranges() {
+    let random = &mut Random(1);
+    for width in [0.001, 0.000_7, 0.000_6, 0.000_5, 0.000_1] {
+        for periodic in [[true, true], [false, true]] {
+            let options = options(&[0.0, 0.0], &[0.004, width], &periodic, 0.000_6, 0.0);
+            let points = scattered(random, 60, &[0.0, 0.0], &[0.004, width]);
+            assert_found_in_both(&format!("width {width} {periodic:?}"), &options, &points);
+        }
+    }
+}
+
+/// On the borders of cells and of the box, at distances of exactly the range.
+#[test]
+fn particles_on_borders() {
+    for (range, count) in [(0.1, 10), (0.3, 7), (1.0 / 3.0, 9), (0.7, 5), (1e-3, 11)] {
+        for lower in [0.0, -0.35, 1000.1] {
+            for periodic in [false, true] {
+                let upper = lower + count as f64 * range;
+                let options = options(&[lower; 2], &[upper; 2], &[periodic; 2], range, 0.0);
+                let at = |i: usize| lower + i as f64 * range;
+                let points: Vec<_> = (0..=count)
+                    .flat_map(|j| (0..=count).map(move |i| vec![at(i), at(j)]))
+                    .collect();
+                let what = format!("range {range} from {lower}, periodic {periodic}");
+                assert_found_in_both(&what, &options, &points);
+            }
+        }
+    }
+}
+
+/// As near to a cell border as a number can be, and as near to the range apart.
+#[test]
+fn particles_beside_borders() {
+    let random = &mut Random(3);
+    for case in 0..300 {
+        let range = 0.1 + random.unit();
+        let lower = 10.0 * (random.unit() - 0.5);
+        let upper = lower + 6.0 * range;
+        let points: Vec<_> = (0..7)
+            .map(|i| lower + f64::from(i) * range)
+            .flat_map(|x| [x.next_down().next_down(), x.next_down(), x, x.next_up()])
+            .map(|x| vec![x])
+            .collect();
+        let options = options(&[lower], &[upper], &[case % 2 == 0], range, 0.0);
+        assert_found_in_both(&format!("case {case}"), &options, &points);
+    }
+}
+
+#[test]
+fn all_in_one_place() {
+    for periodic in [false, true] {
+        let options = options(&[0.0; 3], &[5.0; 3], &[periodic; 3], 1.0, 0.2);
+        assert_found_in_both("one place", &options, &vec![vec![2.0, 3.0, 4.0]; 30]);
+    }
+}
+
+#[test]
+fn one_particle_and_none() {
+    for periodic in [false, true] {
+        for side in [0.4, 5.0] {
+            let options = options(&[0.0; 2], &[side; 2], &[periodic; 2], 1.0, 0.2);
+            assert_found_in_both("one", &options, &[vec![0.3, 0.1]]);
+            assert_found_in_both("none", &options, &[]);
+        }
+    }
+}
+
+/// Clusters so far apart that a dense table of the cells between them could not be held.
+#[test]
+fn clusters_in_empty_space() {
+    let random = &mut Random(5);
+    for distance in [1e4, 1e7, 1e12] {
+        let options = options(&[0.0; 3], &[1.0; 3], &[false, true, false], 0.5, 0.1);
+        let mut points = scattered(random, 90, &[0.0; 3], &[1.0; 3]);
+        for (i, point) in points.iter_mut().enumerate() {
+            point[0] += distance * (i % 3) as f64;
+            point[2] -= distance * (i % 2) as f64;
+        }
+        assert_found::<f64>(&format!("{distance} apart"), &options, &points);
+    }
+}
+
+#[test]
+fn drift_within_half_the_skin() {
+    for seed in 0..200 {
+        let random = &mut Random(seed);
+        let upper = [0.5 + 4.0 * random.unit(), 0.5 + random.unit()];
+        let periodic = [random.one_in(2), random.one_in(2)];
+        let skin = 0.4;
+        let options = options(&[0.0; 2], &upper, &periodic, 1.0, skin);
+        let points = scattered(random, 50, &[0.0; 2], &upper);
+        let mut case = Case::<f64>::new(options, &points);
+        case.sort(1).unwrap();
+        for i in 0..50 {
+            let (angle, far) = (7.0 * random.unit(), 0.4999 * skin);
+            let [x, y] = [case.position[0], case.position[1]];
+            case.columns.values_mut(x)[i] += far * angle.cos();
+            case.columns.values_mut(y)[i] += far * angle.sin();
+        }
+        case.assert_all_pairs_found(&format!("seed {seed}"));
+    }
+}
+
+#[test]
+fn candidates_come_in_the_same_order_whoever_sorts() {
+    let options = options(&[0.0; 3], &[30.0; 3], &[true, false, true], 1.0, 0.1);
+    // More than several workers' chunks.
+    let points = scattered(&mut Random(6), 70_001, &[0.0; 3], &[30.0; 3]);
+    let outcome = |workers| {
+        let mut case = Case::<f64>::new(options.clone(), &points);
+        case.sort(workers).unwrap();
+        (case.columns.values(case.number).to_vec(), case.runs())
+    };
+    let expected = outcome(1);
+    for workers in [2, 3, 8] {
+        assert!(outcome(workers) == expected, "{workers} workers");
+    }
+}
+
+#[test]
+fn sorting_is_stable() {
+    let options = options(&[0.0; 2], &[6.0; 2], &[true, false], 1.0, 0.1);
+    let random = &mut Random(7);
+    let mut case = Case::<f64>::new(options, &scattered(random, 500, &[0.0; 2], &[6.0; 2]));
+    for _ in 0..5 {
+        case.sort(3).unwrap();
+        for (_, span, _) in case.runs() {
+            let order = &case.columns.values(case.number)[span.range()];
+            assert!(order.is_sorted(), "{order:?}");
+        }
+        // Nobody has moved since: nobody is moved.
+        case.sort(3).unwrap();
+        assert!(case.columns.values(case.number).is_sorted());
+        for &position in &case.position {
+            case.columns.values_mut(position).iter_mut().for_each(|x| *x += 0.5 * random.unit());
+        }
+    }
+}
+
+#[test]
+fn a_position_that_is_not_finite_is_named() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for periodic in [false, true] {
+            let options = options(&[0.0; 2], &[6.0; 2], &[periodic; 2], 1.0, 0.1);
+            let mut points = scattered(&mut Random(8), 50, &[0.0; 2], &[6.0; 2]);
+            points[17][1] = bad;
+            let fault = Case::<f64>::new(options, &points).sort(2).unwrap_err().to_string();
+            assert!(fault.contains("particle 17") && fault.contains("direction 1"), "{fault}");
+        }
+    }
+}
+
+/// Moves particles by their velocities, with a rate stage so that cells are asked.
+struct Move {
+    position: Vec<State<f64>>,
+    velocity: State<f64>,
+}
+
+struct Look;
+
+impl RateStage<Cells<f64>> for Look {
+    type Scratch = ();
+
+    fn writes(&self) -> Vec<ColumnId> {
+        Vec::new()
+    }
+
+    fn rate(
+        &self,
+        _: &Near<'_, Cells<f64>>,
+        _: &mut Rates<'_, Cells<f64>>,
+        _: &mut (),
+        _: &Moment,
+    ) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
+impl UpdateStage<Cells<f64>> for Move {
+    type Scratch = ();
+
+    fn update(
+        &self,
+        own: &mut Own<'_, Cells<f64>>,
+        _: &mut (),
+        moment: &Moment,
+    ) -> Result<(), Fault> {
+        let velocity = own.state(self.velocity).whole();
+        for &position in &self.position {
+            let position = own.state_mut(position).whole();
+            position.iter_mut().zip(velocity).for_each(|(x, v)| *x += moment.dt * v);
+        }
+        Ok(())
+    }
+}
+
+/// Runs 20 steps in which particle `who` of the sorted ones moves by `far` in every direction and
+/// a step, sorted only once.
+fn run_away(settings: Settings, who: usize, far: f64) -> Result<(), RunError> {
+    let options = options(&[0.0; 2], &[6.0; 2], &[true; 2], 1.0, 0.4);
+    let points = scattered(&mut Random(9), 90, &[0.0; 2], &[6.0; 2]);
+    let mut case = Case::<f64>::new(options, &points);
+    let velocity = case.columns.state("velocity");
+    case.sort(1).unwrap();
+    case.columns.values_mut(velocity)[who] = far;
+    let Case { columns, position, cells, .. } = case;
+    let step = Step::builder().rate(Look).update(Move { position, velocity }).build();
+    let model = Model::with_fixed_dt("drift", cells, columns, step, 1.0);
+    Simulation::new(model, settings).unwrap().advance(20)
+}
+
+#[test]
+fn drift_past_half_the_skin_is_an_error_that_names_the_particle() {
+    for schedule in Schedule::ALL {
+        let settings = Settings { schedule, workers: 3, ..Settings::default() };
+        // The diagonal of 0.14 is 0.198, that of 0.15 is 0.212; half the skin is 0.2.
+        run_away(settings.clone(), 41, 0.14 / 20.0).unwrap();
+        let error = run_away(settings.clone(), 41, 0.03).unwrap_err();
+        assert_eq!(error.step, 5, "{error}");
+        assert!(error.to_string().contains("particle 41"), "{error}");
+        let error = run_away(settings, 41, f64::NAN).unwrap_err();
+        assert!(error.to_string().contains("particle 41"), "{error}");
+    }
+}
+
+#[test]
+fn no_particles_can_be_stepped() {
+    for schedule in Schedule::ALL {
+        let options = options(&[0.0; 2], &[6.0; 2], &[true; 2], 1.0, 0.4);
+        let mut case = Case::<f64>::new(options, &[]);
+        let velocity = case.columns.state("velocity");
+        case.sort(1).unwrap();
+        let Case { columns, position, cells, .. } = case;
+        let step = Step::builder().rate(Look).update(Move { position, velocity }).build();
+        let model = Model::with_fixed_dt("nobody", cells, columns, step, 1.0);
+        let settings = Settings { schedule, workers: 3, ..Settings::default() };
+        Simulation::new(model, settings).unwrap().advance(20).unwrap();
+    }
+}

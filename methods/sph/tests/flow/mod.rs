@@ -1,0 +1,61 @@
+//! A small periodic flow with everything in it, for tests of what must hold for any flow.
+
+use finegrain_framework::shape::{Axis, Shape};
+use finegrain_framework::space::cells::Region;
+use finegrain_framework::{Real, Settings, Simulation, space::Cells};
+use finegrain_sph::{
+    Fields, Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation, Viscosity,
+};
+
+/// Vortices in a periodic box from a disturbed lattice, with or without a cylinder in it.
+pub fn flow<T: Real>(
+    dims: usize,
+    viscosity: Viscosity,
+    has_body: bool,
+    settings: Settings,
+) -> (Simulation<Cells<T>>, Fields<T>, f64) {
+    let (packing, box_sides, spacing) = if dims == 3 {
+        // Thin: a support radius of 0.3 in a box 0.25 high.
+        (Packing::HexagonalClosePacked, [1.0, 1.0, 0.25], 0.1)
+    } else {
+        (Packing::Square, [1.0; 3], 0.04)
+    };
+    let lattice = packing.fit(box_sides, spacing).unwrap();
+    let lengths = lattice.lengths();
+    let positions: Vec<_> = lattice.displaced_positions(0.1, 7).collect();
+    let wave = |x: f64, length: f64| (std::f64::consts::TAU * x / length).sin();
+    let start = Start {
+        region: Region {
+            lower: vec![0.0; dims],
+            upper: lengths[..dims].to_vec(),
+            periodic: vec![true; dims],
+        },
+        spacing,
+        particle_volume: lattice.volume_per_particle(),
+        velocities: positions
+            .iter()
+            .map(|x| [wave(x[1], lengths[1]), 0.5 * wave(x[0], lengths[0]), 0.0])
+            .collect(),
+        positions,
+    };
+    let body = Shape::Cylinder {
+        axis: Axis::Z,
+        centre: [0.5 * lengths[0], 0.5 * lengths[1], 0.0],
+        radius: 0.2,
+    };
+    let fluid = Fluid {
+        density: 1.0,
+        sound_speed: 10.0,
+        kinematic_viscosity: 0.01,
+        state_equation: StateEquation::Tait { exponent: 7.0, background: 0.05 },
+    };
+    let physics = Physics {
+        viscosity: Some(viscosity),
+        body_acceleration: if has_body { [0.3, 0.0, 0.0] } else { [0.0; 3] },
+        bodies: if has_body { vec![body] } else { Vec::new() },
+        ..Physics::default()
+    };
+    let sph = Sph::<T>::new(&start, &fluid, &physics, &Scheme::default()).unwrap();
+    let simulation = Simulation::new(sph.model, settings).unwrap();
+    (simulation, sph.fields, sph.particle_mass)
+}

@@ -1,0 +1,149 @@
+//! Flow through a square array of cylinders, driven by a body force: one periodic cell.
+//!
+//! The cylinder fills the fraction phi of an L x L cell, L = 0.1 m, and the flow is along x. In 3-D
+//! the cell is extruded along z, a few layers thick, as in Holmes et al. (2011); the solution does
+//! not depend on z. The defaults are those of Morris, Fox & Zhu (1997) at Re = 0.03.
+
+use std::f64::consts::PI;
+
+use finegrain_framework::shape::{Axis, Shape};
+
+use super::parameter::{Parameter, Parameters};
+
+/// Side of the cell, m.
+pub const SIDE: f64 = 0.1;
+/// Density of the fluid, kg/m^3.
+pub const DENSITY: f64 = 1000.0;
+
+/// Parameters that every method shares.
+pub const PARAMETERS: [Parameter; 5] = [
+    Parameter::number("dim", 2.0, [2.0, 3.0], "", "dimensions, 2 or 3"),
+    Parameter::number(
+        "solid_fraction",
+        PI * 0.04,
+        [0.001, 0.5],
+        "",
+        "part of the cell that the cylinder fills",
+    ),
+    Parameter::number("resolution", 50.0, [10.0, 4000.0], "", "points across the cell"),
+    Parameter::number("viscosity", 1e-4, [1e-9, 1e3], "m^2/s", "kinematic viscosity"),
+    Parameter::number("body_acceleration", 5e-5, [1e-15, 1e6], "m/s^2", "drives the flow along x"),
+];
+
+/// The scene with its parameters set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// Dimensions.
+    pub dims: usize,
+    /// Part of the cell that is solid.
+    pub solid_fraction: f64,
+    /// Points across the cell.
+    pub resolution: f64,
+    /// Kinematic viscosity, m^2/s.
+    pub viscosity: f64,
+    /// Body acceleration along x, m/s^2.
+    pub body_acceleration: f64,
+}
+
+impl Cylinder {
+    /// From the scene's parameters.
+    pub fn new(parameters: &Parameters) -> Self {
+        Self {
+            dims: parameters.number("dim") as usize,
+            solid_fraction: parameters.number("solid_fraction"),
+            resolution: parameters.number("resolution"),
+            viscosity: parameters.number("viscosity"),
+            body_acceleration: parameters.number("body_acceleration"),
+        }
+    }
+
+    /// Radius of the cylinder, m.
+    pub fn radius(&self) -> f64 {
+        SIDE * (self.solid_fraction / PI).sqrt()
+    }
+
+    /// The cylinder, in the middle of a cell with these side lengths.
+    pub fn body(&self, lengths: [f64; 3]) -> Shape {
+        Shape::Cylinder {
+            axis: Axis::Z,
+            centre: [0.5 * lengths[0], 0.5 * lengths[1], 0.0],
+            radius: self.radius(),
+        }
+    }
+
+    /// Superficial mean velocity of creeping flow, m/s, from the drag of a dilute array (Sangani &
+    /// Acrivos 1982, eq. 41): an estimate, to choose a sound speed with.
+    pub fn creeping_velocity(&self) -> f64 {
+        let phi = self.solid_fraction;
+        let series = -0.5 * phi.ln() - 0.738 + phi - 0.887 * phi * phi + 2.038 * phi.powi(3);
+        let drag = 4.0 * PI / series;
+        self.body_acceleration * SIDE * SIDE / (self.viscosity * drag)
+    }
+
+    /// `k = f L^2 / (nu U)`, with `U` the superficial mean velocity: averaged over the whole cell,
+    /// zero in the cylinder.
+    pub fn drag(&self, superficial_velocity: f64) -> f64 {
+        self.body_acceleration * SIDE * SIDE / (self.viscosity * superficial_velocity)
+    }
+
+    /// The drag for these parameters from an independent solution, where there is one.
+    pub fn reference_drag(&self) -> Option<f64> {
+        let is = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
+        // f L^3 / nu^2 decides between creeping and inertial flow.
+        let forcing = self.body_acceleration * SIDE.powi(3) / self.viscosity.powi(2);
+        if is(self.solid_fraction, PI * 0.04) {
+            if let Some(&(_, drag)) = INERTIAL.iter().find(|(g, _)| is(forcing, *g)) {
+                return Some(drag);
+            }
+        }
+        // Inertia adds a part in 1e5 at forcing 5 and grows with its square.
+        let creeping = CREEPING.iter().find(|(phi, _)| is(self.solid_fraction, *phi))?;
+        (forcing <= 5.0).then_some(creeping.1)
+    }
+}
+
+/// Solid fraction and `k` of creeping flow along an axis of a square array: streamfunction series
+/// that satisfies no slip exactly, converged to nine digits; agrees with Sangani & Acrivos (1982),
+/// Table 1, where that has the fraction.
+const CREEPING: [(f64, f64); 5] = [
+    (0.01, 7.982041463),
+    (0.1, 24.83167525),
+    (0.125663706144, 30.35063565),
+    (0.2, 51.52694896),
+    (0.4, 217.8943147),
+];
+
+/// `f L^3 / nu^2` and `k` at phi = 0.04 pi: steady Navier-Stokes by finite elements (Q2-Q1, 128 x
+/// 40 elements), for Morris, Fox & Zhu (1997) at Re = 0.03 and Re = 1.
+const INERTIAL: [(f64, f64); 2] = [(5.0, 30.35096428), (150.0, 30.61015867)];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn morris(viscosity: f64, body_acceleration: f64) -> Cylinder {
+        Cylinder {
+            dims: 2,
+            solid_fraction: PI * 0.04,
+            resolution: 50.0,
+            viscosity,
+            body_acceleration,
+        }
+    }
+
+    #[test]
+    fn references_are_those_of_the_parameters() {
+        assert_eq!(morris(1e-4, 5e-5).reference_drag(), Some(30.35096428));
+        assert_eq!(morris(1e-6, 1.5e-7).reference_drag(), Some(30.61015867));
+        assert_eq!(morris(1e-4, 1e-6).reference_drag(), Some(30.35063565));
+        assert_eq!(morris(1e-6, 1.5e-6).reference_drag(), None);
+    }
+
+    #[test]
+    fn the_estimate_is_near_the_reference_where_the_array_is_dilute() {
+        for (phi, drag) in &CREEPING[..3] {
+            let scene = Cylinder { solid_fraction: *phi, ..morris(1e-4, 5e-5) };
+            assert!((scene.drag(scene.creeping_velocity()) / drag - 1.0).abs() < 0.01);
+        }
+    }
+}

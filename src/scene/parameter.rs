@@ -1,0 +1,222 @@
+//! Parameters of scenes: declared with default, unit and valid range; set by name.
+
+use std::collections::BTreeMap;
+
+/// What a parameter may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number between two ends, both allowed.
+    Number {
+        /// Default.
+        default: f64,
+        /// Smallest allowed.
+        least: f64,
+        /// Largest allowed.
+        most: f64,
+    },
+    /// One of several names, the first being the default.
+    Choice(&'static [&'static str]),
+}
+
+/// A parameter that a scene declares.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: &'static str,
+    /// What it may be.
+    pub kind: Kind,
+    /// Its unit; empty for a pure number or a choice.
+    pub unit: &'static str,
+    /// What it means.
+    pub help: &'static str,
+}
+
+/// A parameter's value.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// One of the names.
+    Choice(String),
+}
+
+/// Why a parameter could not be set.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ParameterError {
+    /// The scene has no such parameter.
+    #[error("scene {scene:?} has no parameter {name:?}; it has {known}")]
+    Unknown {
+        /// The scene.
+        scene: &'static str,
+        /// What was given.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// The value is not a number, outside its range or none of the choices.
+    #[error("{name} = {value} is not valid: it must be {range}")]
+    Invalid {
+        /// The parameter.
+        name: &'static str,
+        /// What was given.
+        value: String,
+        /// What it may be.
+        range: String,
+    },
+}
+
+impl Parameter {
+    /// A number with default and range.
+    pub const fn number(
+        name: &'static str,
+        default: f64,
+        [least, most]: [f64; 2],
+        unit: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self { name, kind: Kind::Number { default, least, most }, unit, help }
+    }
+
+    /// A choice among names, the first being the default.
+    pub const fn choice(
+        name: &'static str,
+        choices: &'static [&'static str],
+        help: &'static str,
+    ) -> Self {
+        Self { name, kind: Kind::Choice(choices), unit: "", help }
+    }
+
+    /// The default.
+    pub fn default(&self) -> Value {
+        match self.kind {
+            Kind::Number { default, .. } => Value::Number(default),
+            Kind::Choice(choices) => Value::Choice(choices[0].to_owned()),
+        }
+    }
+
+    /// What it may be, in words.
+    pub fn range(&self) -> String {
+        match self.kind {
+            Kind::Number { least, most, .. } if most == f64::INFINITY => {
+                format!("at least {least:?} {}", self.unit).trim_end().to_owned()
+            }
+            Kind::Number { least, most, .. } => {
+                format!("between {least:?} and {most:?} {}", self.unit).trim_end().to_owned()
+            }
+            Kind::Choice(choices) => format!("one of {}", choices.join(", ")),
+        }
+    }
+
+    fn parse(&self, text: &str) -> Result<Value, ParameterError> {
+        let value = match self.kind {
+            Kind::Number { least, most, .. } => text
+                .parse()
+                .ok()
+                .filter(|x: &f64| x.is_finite() && (least..=most).contains(x))
+                .map(Value::Number),
+            Kind::Choice(choices) => {
+                choices.contains(&text).then(|| Value::Choice(text.to_owned()))
+            }
+        };
+        value.ok_or_else(|| ParameterError::Invalid {
+            name: self.name,
+            value: text.to_owned(),
+            range: self.range(),
+        })
+    }
+}
+
+/// The values of all parameters of a scene.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(transparent)]
+pub struct Parameters(BTreeMap<&'static str, Value>);
+
+impl Parameters {
+    /// Defaults, with `settings` (name, value) put over them.
+    ///
+    /// # Errors
+    /// If a name is unknown or a value not valid; the message says what is.
+    pub fn new<'a>(
+        scene: &'static str,
+        declared: &[Parameter],
+        settings: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<Self, ParameterError> {
+        let mut values: BTreeMap<_, _> = declared.iter().map(|p| (p.name, p.default())).collect();
+        for (name, text) in settings {
+            let parameter = declared.iter().find(|p| p.name == name).ok_or_else(|| {
+                let known: Vec<_> = declared.iter().map(|p| p.name).collect();
+                ParameterError::Unknown { scene, name: name.to_owned(), known: known.join(", ") }
+            })?;
+            values.insert(parameter.name, parameter.parse(text)?);
+        }
+        Ok(Self(values))
+    }
+
+    /// A number.
+    ///
+    /// # Panics
+    /// If the scene declares no number of this name: a mistake in the scene.
+    pub fn number(&self, name: &str) -> f64 {
+        match self.0.get(name) {
+            Some(Value::Number(x)) => *x,
+            other => panic!("parameter {name:?} is {other:?}, not a number"),
+        }
+    }
+
+    /// A choice.
+    ///
+    /// # Panics
+    /// If the scene declares no choice of this name: a mistake in the scene.
+    pub fn choice(&self, name: &str) -> &str {
+        match self.0.get(name) {
+            Some(Value::Choice(text)) => text,
+            other => panic!("parameter {name:?} is {other:?}, not a choice"),
+        }
+    }
+
+    /// Names and values, by name.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Value)> {
+        self.0.iter().map(|(&name, value)| (name, value))
+    }
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(x) => write!(f, "{x:?}"),
+            Self::Choice(text) => f.write_str(text),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DECLARED: [Parameter; 2] = [
+        Parameter::number("resolution", 50.0, [8.0, 2000.0], "", "points across"),
+        Parameter::choice("kernel", &["gaussian", "quintic-spline"], "smoothing kernel"),
+    ];
+
+    #[test]
+    fn settings_go_over_defaults() {
+        let p = Parameters::new("x", &DECLARED, [("kernel", "quintic-spline")]).unwrap();
+        assert_eq!(p.number("resolution"), 50.0);
+        assert_eq!(p.choice("kernel"), "quintic-spline");
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_what_would_be_right() {
+        let said = |setting| {
+            Parameters::new("x", &DECLARED, [setting]).unwrap_err().to_string()
+        };
+        assert_eq!(
+            said(("resolution", "7")),
+            "resolution = 7 is not valid: it must be between 8.0 and 2000.0"
+        );
+        assert!(said(("resolution", "NaN")).contains("resolution = NaN"));
+        assert!(said(("kernel", "cubic")).contains("one of gaussian, quintic-spline"));
+        assert!(said(("resolutoin", "9")).contains("it has resolution, kernel"));
+    }
+}
