@@ -253,6 +253,12 @@ impl Columns {
         (0..self.columns.len() as u16).map(ColumnId)
     }
 
+    /// The handle of the state column `name`; `None` if there is none of this name and type.
+    pub fn find_state<T: Element>(&self, name: &str) -> Option<State<T>> {
+        let is_it = |c: &Column| c.name == name && c.role == Role::State && c.kind == T::KIND;
+        self.iter().find(|(_, column)| is_it(column)).map(|(id, _)| State(id, PhantomData))
+    }
+
     /// One column's declaration.
     pub fn column(&self, id: ColumnId) -> &Column {
         &self.columns[id.0 as usize]

@@ -17,7 +17,7 @@ pub(crate) use saved::{Saved, column_block};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::clock::Clock;
-use crate::columns::Columns;
+use crate::columns::{Columns, Role};
 use crate::domain::Domain;
 use crate::leg::{Cause, Desk, Failure, Leg, panic_message};
 use crate::schedule::{Executor, Schedule};
@@ -208,8 +208,9 @@ impl<D: Domain> Simulation<D> {
             return u64::MAX;
         }
         let chosen = self.settings.steps_ahead;
+        let steps = chosen.unwrap_or_else(|| ahead::steps_ahead(&self.model));
         // A leg's parts are counted in 32 bits.
-        chosen.unwrap_or_else(|| ahead::steps_ahead(&self.model)).clamp(1, 1 << 16)
+        steps.clamp(1, 1 << 16)
     }
 
     fn begin_pace(&mut self) -> Result<(), RunError> {
@@ -243,6 +244,24 @@ impl<D: Domain> Simulation<D> {
         };
         let stage = self.model.whole.get(at).map_or("time step control", |stage| stage.name());
         Err(self.error_now(stage, None, cause))
+    }
+
+    /// Makes sure that all state is finite now, unless [`Settings::check_every`] is `None`.
+    ///
+    /// # Errors
+    /// Names the column and the sub-domain.
+    pub fn check_finite(&self) -> Result<(), RunError> {
+        if self.settings.check_every.is_none() {
+            return Ok(());
+        }
+        for (id, column) in self.columns().iter().filter(|(_, c)| c.role() == Role::State) {
+            if let Some(point) = self.columns().any_values(id).first_not_finite() {
+                let owner = self.domain().partition().owner(point);
+                let cause = Cause::NotFinite { column: column.name().to_owned() };
+                return Err(self.error_now("check between steps", owner, cause));
+            }
+        }
+        Ok(())
     }
 
     /// An error of work that is done between steps.

@@ -95,6 +95,15 @@ impl Values<'_> {
         self.len() == 0
     }
 
+    /// Place of the first number that is infinite or none.
+    pub fn first_not_finite(&self) -> Option<usize> {
+        match self {
+            Self::F32(values) => values.iter().position(|x| !x.is_finite()),
+            Self::F64(values) => values.iter().position(|x| !x.is_finite()),
+            Self::U8(_) | Self::U32(_) | Self::U64(_) => None,
+        }
+    }
+
     /// Writes the numbers, little-endian.
     ///
     /// # Errors

@@ -11,11 +11,9 @@ use super::view::View;
 use super::writer::Writer;
 use super::{Run, RunFailed, RunFailure, Stopped, Summary};
 use crate::checkpoint::Header;
-use crate::columns::{ColumnId, Role};
+use crate::columns::ColumnId;
 use crate::domain::Domain;
-use crate::leg::Cause;
 use crate::port::Arbiter;
-use crate::simulation::RunError;
 
 /// What a run has besides its plan while it goes on.
 struct Course {
@@ -131,6 +129,10 @@ impl<D: Domain> Run<D> {
                 save |= stopped.is_some();
             }
             save |= stopped.is_some() && self.takes_requests;
+            // Stages are checked every few steps only; what is kept for good must be good.
+            if save || stopped.is_some() {
+                self.simulation.check_finite()?;
+            }
             if save {
                 self.take_checkpoint(course)?;
             }
@@ -232,29 +234,9 @@ impl<D: Domain> Run<D> {
         }
         let mut snapshot = writer.snapshot()?;
         snapshot.take(step, time, self.simulation.columns(), &course.kept);
-        // Stages are checked every few steps only; a checkpoint must be good.
-        if self.simulation.settings().check_every.is_some() {
-            for (place, &id) in course.kept.iter().enumerate() {
-                if let Some(point) = snapshot.not_finite(place) {
-                    self.refuse(id, point)?;
-                }
-            }
-        }
         writer.checkpoint(self.simulation.position(), snapshot)?;
         self.saved_at = Some(step);
         Ok(())
-    }
-
-    /// The error that `point` of a state column is not finite.
-    fn refuse(&self, id: ColumnId, point: usize) -> Result<(), RunError> {
-        let simulation = &self.simulation;
-        let column = simulation.columns().column(id);
-        if column.role() != Role::State {
-            return Ok(());
-        }
-        let owner = simulation.domain().partition().owner(point);
-        let cause = Cause::NotFinite { column: column.name().to_owned() };
-        Err(simulation.error_now("check before a checkpoint", owner, cause))
     }
 
     fn report(&mut self, watch: &mut Stopwatch, is_last: bool) {

@@ -40,13 +40,4 @@ impl Snapshot {
         let ColumnCopy { kind, words } = &self.copies[place];
         values_of(*kind, words, self.points)
     }
-
-    /// The first point at which the copy at `place` is neither finite nor a whole number.
-    pub fn not_finite(&self, place: usize) -> Option<usize> {
-        match self.values(place) {
-            Values::F32(values) => values.iter().position(|x| !x.is_finite()),
-            Values::F64(values) => values.iter().position(|x| !x.is_finite()),
-            Values::U8(_) | Values::U32(_) | Values::U64(_) => None,
-        }
-    }
 }
