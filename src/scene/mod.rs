@@ -142,7 +142,7 @@ pub const SCENES: [Scene; 2] = [
     },
     Scene {
         name: "taylor-green",
-        summary: "vortices decaying in a periodic box (Taylor & Green 1937)",
+        summary: "vortices decaying in a periodic box (Taylor & Green 1937); plain SPH decays them too fast",
         methods: &["sph"],
         parameters: sph::taylor_green::parameters,
         prepare: sph::taylor_green::prepare,

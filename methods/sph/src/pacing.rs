@@ -66,6 +66,13 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
                 "largest speed {speed} m/s and acceleration {acceleration} m/s^2 must be finite"
             )));
         }
+        if speed > self.sound_speed {
+            return Err(Fault::new(format!(
+                "largest speed {speed:.3e} m/s; it must be at most the sound speed, {:.3e} m/s: the \
+                 time step is past stability, or the sound speed too low",
+                self.sound_speed
+            )));
+        }
         // A particle moves by at most t v + t^2 a in the time t, a factor of two allowed for
         // accelerations that grow meanwhile. That must stay within the skin.
         let slack = 0.8 * whole.domain.slack();

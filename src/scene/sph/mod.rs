@@ -40,7 +40,7 @@ const PARAMETERS: [Parameter; 7] = [
         "how time is stepped",
     ),
     Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
-    Parameter::number("mach", 0.1, [1e-4, 1.0], "", "largest speed over sound speed, about"),
+    Parameter::number("mach", 0.1, [1e-4, 0.5], "", "largest speed over sound speed, about"),
 ];
 
 /// What the parameters say about the discretisation.
