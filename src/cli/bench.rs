@@ -137,14 +137,14 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
 fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     writeln!(
         out,
-        "\n{:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>14} {:>9}",
+        "\n{:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>13} {:>9}",
         "particles",
         "workers",
         "s/step (med)",
         "s/step (min)",
         "speed-up",
         "efficiency",
-        "Mpairs/s/core",
+        "Minteractions",
         "B/particle"
     )?;
     let optional = |x: Option<f64>, digits: usize| {
@@ -153,7 +153,7 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     for row in rows {
         writeln!(
             out,
-            "{:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>14.1} {:>9}",
+            "{:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>13.1} {:>9}",
             row.particles,
             row.workers,
             row.seconds(),
