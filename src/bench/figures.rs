@@ -11,16 +11,15 @@ use crate::figure::{Axis, Chart, FigureError, Scale};
 /// # Errors
 /// If a picture cannot be written.
 pub fn draw(out: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, FigureError> {
-    let workers = || Axis::new("number of workers");
-    let most = rows.iter().map(|r| r.workers).max().unwrap_or(1) as f64;
+    let workers = || Axis::new("number of workers").scale(Scale::Log2);
+    let most = rows.iter().map(|r| r.workers).max().unwrap_or(1);
+    let numbers = || (1..=most).map(|n| n as f64);
     let mut pictures = Vec::new();
 
     let path = out.join("fig10-time-per-step.png");
-    let chart = Chart::new("Time per step (Fig. 10)").x(workers().scale(Scale::Log2)).y(Axis::new(
-        "time per step",
-    )
-    .unit("s")
-    .scale(Scale::Log10));
+    let chart = Chart::new("Time per step (Fig. 10)")
+        .x(workers())
+        .y(Axis::new("time per step").unit("s").scale(Scale::Log10));
     series(chart, rows, |row| Some(row.seconds())).save(&path)?;
     pictures.push(path);
 
@@ -29,7 +28,7 @@ pub fn draw(out: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, FigureError> {
         let chart = Chart::new("Speed-up over one worker (Fig. 11)")
             .x(workers())
             .y(Axis::new("speed-up"))
-            .reference("ideal", [[1.0, 1.0], [most, most]]);
+            .reference("ideal", numbers().map(|n| [n, n]));
         series(chart, rows, |row| ratio(row, 1.0)).save(&path)?;
         pictures.push(path);
 
@@ -37,7 +36,7 @@ pub fn draw(out: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, FigureError> {
         let chart = Chart::new("Parallel efficiency (Fig. 12)")
             .x(workers())
             .y(Axis::new("efficiency").covering(0.8, 1.05))
-            .reference("ideal", [[1.0, 1.0], [most, 1.0]]);
+            .reference("ideal", numbers().map(|n| [n, 1.0]));
         series(chart, rows, |row| ratio(row, row.workers as f64)).save(&path)?;
         pictures.push(path);
     }
