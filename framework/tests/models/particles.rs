@@ -13,8 +13,18 @@ struct Repulsion<const D: usize> {
     acceleration: [Rate<f64>; D],
 }
 
+/// Room for the runs around any cell from the start: how far a worker's scratch has grown by some
+/// step depends on what it happened to be handed.
+struct Seen(Vec<Run>);
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self(Vec::with_capacity(256))
+    }
+}
+
 impl<const D: usize> RateStage<Cells<f64>> for Repulsion<D> {
-    type Scratch = Vec<Run>;
+    type Scratch = Seen;
 
     fn writes(&self) -> Vec<ColumnId> {
         self.acceleration.map(|a| a.id()).to_vec()
@@ -24,7 +34,7 @@ impl<const D: usize> RateStage<Cells<f64>> for Repulsion<D> {
         &self,
         near: &Near<'_, Cells<f64>>,
         rates: &mut Rates<'_, Cells<f64>>,
-        runs: &mut Vec<Run>,
+        Seen(runs): &mut Seen,
         _: &Moment,
     ) -> Result<(), Fault> {
         let block = near.sub_domain();
