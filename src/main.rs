@@ -1,1 +1,46 @@
-fn main() {}
+//! The `finegrain` command.
+#![forbid(unsafe_code)]
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+mod cli;
+
+/// Fine-grained parallel time stepping on multi-core machines.
+///
+/// Without a command it does the main job, `bench cylinder` with its defaults.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a scene: a built-in one by name, or a TOML file.
+    Run(cli::run::RunArguments),
+    /// List the built-in scenes with their parameters.
+    Scenes,
+    /// Measure speed, speed-up and efficiency.
+    #[command(subcommand)]
+    Bench(cli::bench::BenchCommand),
+}
+
+fn main() -> ExitCode {
+    let command = Arguments::parse().command;
+    let outcome = match command {
+        Some(Command::Run(arguments)) => cli::run::run(arguments),
+        Some(Command::Scenes) => cli::scenes::list(&mut std::io::stdout().lock()),
+        Some(Command::Bench(command)) => cli::bench::bench(command),
+        None => cli::bench::bench(cli::bench::BenchCommand::default()),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

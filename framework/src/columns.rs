@@ -248,6 +248,11 @@ impl Columns {
         (0u16..).map(ColumnId).zip(&self.columns)
     }
 
+    /// The ids of the declared columns, in order of declaration.
+    pub(crate) fn ids(&self) -> impl Iterator<Item = ColumnId> + use<> {
+        (0..self.columns.len() as u16).map(ColumnId)
+    }
+
     /// The handle of the state column `name`; `None` if there is none of this name and type.
     pub fn find_state<T: Element>(&self, name: &str) -> Option<State<T>> {
         let is_it = |c: &Column| c.name == name && c.role == Role::State && c.kind == T::KIND;

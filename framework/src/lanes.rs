@@ -7,6 +7,22 @@
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 
+/// Name of the instruction set that lanes are computed with on this processor. Runs on one kind of
+/// processor agree bit for bit; across kinds that is meant, and tested where it can be, but not
+/// promised.
+pub fn instruction_set() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if avx512::is_available() {
+            return "x86-64 with AVX-512";
+        }
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            return "x86-64 with AVX2";
+        }
+    }
+    std::env::consts::ARCH
+}
+
 /// Points that [`Lanes::within`] has found, by index into the slices it searched.
 #[derive(Clone, Debug, Default)]
 pub struct Found {
@@ -33,12 +49,25 @@ impl Found {
         &self.indices[..self.count]
     }
 
+    /// Number of points found, rounded up to whole groups of [`SUMS`]: as many values as
+    /// [`Lanes::gather`] writes. What is beyond [`Found::len`] repeats the first point.
+    pub fn padded(&self) -> usize {
+        self.count.next_multiple_of(SUMS)
+    }
+
+    /// Fills the last group up with the first point found.
+    #[inline]
+    fn pad(&mut self) {
+        let padded = self.padded();
+        let first = self.indices[0];
+        self.indices[self.count..padded].fill(first);
+    }
+
     /// Makes room for a search among `points` points.
     fn prepare(&mut self, points: usize) {
-        const MOST_LANES: usize = 16;
         assert!(i32::try_from(points).is_ok(), "more points than an i32 counts");
-        if self.indices.len() < points + MOST_LANES {
-            self.indices.resize(points + MOST_LANES, 0);
+        if self.indices.len() < points + SUMS {
+            self.indices.resize(points + SUMS, 0);
         }
         self.count = 0;
         self.searched = points;
@@ -71,23 +100,22 @@ pub trait Lanes: Copy + Sized {
         found: &mut Found,
     );
 
-    /// `sum_i a_i b_i` over whole groups of [`SUMS`] elements, in as many partial sums that are then
-    /// added by halves.
+    /// `sum_i a_i b_i` for each of several `b`, over whole groups of [`SUMS`] elements, in as many
+    /// partial sums that are then added by halves.
     ///
     /// # Panics
     /// If the lengths differ or are no multiple of [`SUMS`].
-    fn dot(a: &[Self], b: &[Self]) -> Self;
+    fn dots<const N: usize>(a: &[Self], b: [&[Self]; N]) -> [Self; N];
 
-    /// Writes element `s` of the found points' records to the beginning of `to[s]`: from an array
-    /// of structures, where a point's values share a cache line, to lanes.
+    /// Writes element `s` of the found points' records to the first [`Found::padded`] places of
+    /// `to[s]`: from an array of structures, where a point's values share a cache line, to lanes.
     ///
     /// # Panics
-    /// If there are fewer records than points were searched, or `to` has no room for what was
-    /// found.
+    /// If there are fewer records than points were searched, or `to` has no room.
     fn gather(from: &[Record<Self>], found: &Found, to: &mut [Vec<Self>; RECORD]);
 }
 
-/// Partial sums of [`Lanes::dot`]: two full vectors of f64, one of f32.
+/// Partial sums of [`Lanes::dots`]: two full vectors of f64, one of f32.
 pub const SUMS: usize = 16;
 
 /// Values of a point that are gathered together.
@@ -97,7 +125,7 @@ pub const RECORD: usize = 8;
 pub type Record<T> = [T; RECORD];
 
 macro_rules! lanes {
-    ($scalar:ty, $within:ident, $near_box:ident, $gather:ident, $dot:ident) => {
+    ($scalar:ty, $within:ident, $near_box:ident, $gather:ident, $dots:ident) => {
         impl Lanes for $scalar {
             #[inline]
             fn within<const D: usize>(
@@ -113,9 +141,11 @@ macro_rules! lanes {
                 if avx512::is_available() {
                     // SAFETY: the instruction set is there; the slices have length n and the
                     // indices room for n and one vector more (`prepare`).
-                    return unsafe { avx512::$within(points, centre, radius_squared, found) };
+                    unsafe { avx512::$within(points, centre, radius_squared, found) };
+                    return found.pad();
                 }
                 search(points, radius_squared, found, |a, x| x - centre[a]);
+                found.pad();
             }
 
             #[inline]
@@ -132,49 +162,58 @@ macro_rules! lanes {
                 #[cfg(target_arch = "x86_64")]
                 if avx512::is_available() {
                     // SAFETY: as in `within`.
-                    return unsafe {
-                        avx512::$near_box(points, lower, upper, radius_squared, found)
-                    };
+                    unsafe { avx512::$near_box(points, lower, upper, radius_squared, found) };
+                    return found.pad();
                 }
                 search(points, radius_squared, found, |a, x| {
                     (lower[a] - x).max(x - upper[a]).max(0.0)
                 });
+                found.pad();
             }
 
             #[inline(always)]
-            fn dot(a: &[Self], b: &[Self]) -> Self {
-                assert!(a.len() == b.len() && a.len() % SUMS == 0, "not whole groups");
+            fn dots<const N: usize>(a: &[Self], b: [&[Self]; N]) -> [Self; N] {
+                let mut is_whole = a.len() % SUMS == 0;
+                for b in b {
+                    is_whole &= b.len() == a.len();
+                }
+                assert!(is_whole, "not whole groups of one length");
                 #[cfg(target_arch = "x86_64")]
                 if avx512::is_available() {
-                    // SAFETY: the instruction set is there; both are whole groups, equally many.
-                    return unsafe { avx512::$dot(a, b) };
+                    // SAFETY: the instruction set is there; all are whole groups, equally many.
+                    return unsafe { avx512::$dots(a, b) };
                 }
-                let mut sums = [0.0 as $scalar; SUMS];
-                for (a, b) in a.as_chunks::<SUMS>().0.iter().zip(b.as_chunks::<SUMS>().0) {
-                    for l in 0..SUMS {
-                        sums[l] = a[l].mul_add(b[l], sums[l]);
+                b.map(|b| {
+                    let mut sums = [0.0 as $scalar; SUMS];
+                    for (a, b) in a.as_chunks::<SUMS>().0.iter().zip(b.as_chunks::<SUMS>().0) {
+                        for l in 0..SUMS {
+                            sums[l] = a[l].mul_add(b[l], sums[l]);
+                        }
                     }
-                }
-                add_by_halves(sums)
+                    add_by_halves(sums)
+                })
             }
 
             #[inline]
             fn gather(from: &[Record<Self>], found: &Found, to: &mut [Vec<Self>; RECORD]) {
                 assert!(from.len() >= found.searched, "fewer records than points searched");
-                assert!(to.iter().all(|t| t.len() >= found.count), "no room for what was found");
+                let padded = found.padded();
+                assert!(to.iter().all(|t| t.len() >= padded), "no room for what was found");
+                let indices = &found.indices[..padded];
                 #[cfg(target_arch = "x86_64")]
                 if avx512::is_available() {
                     // SAFETY: the instruction set is there; every found index is below
-                    // `searched` and so inside `from`; `to` has room for what was found.
-                    return unsafe { avx512::$gather(from, found.indices(), to) };
+                    // `searched` and so inside `from`, those of the padding too; there are whole
+                    // groups of them and `to` has room.
+                    return unsafe { avx512::$gather(from, indices, to) };
                 }
-                transpose(from, found.indices(), to, 0);
+                transpose(from, indices, to);
             }
         }
     };
 }
-lanes!(f64, within_f64, near_box_f64, gather_f64, dot_f64);
-lanes!(f32, within_f32, near_box_f32, gather_f32, dot_f32);
+lanes!(f64, within_f64, near_box_f64, gather_f64, dots_f64);
+lanes!(f32, within_f32, near_box_f32, gather_f32, dots_f32);
 
 /// Searches one point at a time, without branches.
 #[inline]
@@ -208,15 +247,10 @@ fn add_by_halves<T: num_traits::Float>(mut sums: [T; SUMS]) -> T {
     sums[0]
 }
 
-/// Writes the records at `indices[first..]` to their lanes, one at a time.
+/// Writes the records at `indices` to their lanes, one at a time.
 #[inline]
-fn transpose<T: Copy>(
-    from: &[Record<T>],
-    indices: &[u32],
-    to: &mut [Vec<T>; RECORD],
-    first: usize,
-) {
-    for (k, &i) in indices.iter().enumerate().skip(first) {
+fn transpose<T: Copy>(from: &[Record<T>], indices: &[u32], to: &mut [Vec<T>; RECORD]) {
+    for (k, &i) in indices.iter().enumerate() {
         for (lane, &value) in to.iter_mut().zip(&from[i as usize]) {
             lane[k] = value;
         }
@@ -253,13 +287,15 @@ mod tests {
             assert_eq!(found.indices(), expected, "{n} points");
             let records: Vec<Record<T>> =
                 y.iter().map(|&y| std::array::from_fn(|s| y + T::of(s as f64))).collect();
-            let mut gathered = std::array::from_fn(|_| vec![T::nan(); found.len() + 3]);
+            let mut gathered = std::array::from_fn(|_| vec![T::nan(); found.padded() + 3]);
             T::gather(&records, &found, &mut gathered);
             for (s, lane) in gathered.iter().enumerate() {
                 for (k, &j) in expected.iter().enumerate() {
                     assert_eq!(lane[k], records[j as usize][s]);
                 }
-                assert!(lane[found.len()..].iter().all(|g| g.is_nan()));
+                let padding = found.len()..found.padded();
+                assert!(lane[padding].iter().all(|&g| g == lane[0]));
+                assert!(lane[found.padded()..].iter().all(|g| g.is_nan()));
             }
         }
     }
@@ -274,21 +310,23 @@ mod tests {
         agrees_with_the_definition::<f32>();
     }
 
-    fn dot_agrees_with_the_definition<T: Real>() {
+    fn dots_agree_with_the_definition<T: Real>() {
         for groups in [0, 1, 2, 11] {
             let [x, y, _] = points::<T>(groups * SUMS);
             let mut sums = [T::zero(); SUMS];
             for (i, (&x, &y)) in x.iter().zip(&y).enumerate() {
                 sums[i % SUMS] = x.mul_add(y, sums[i % SUMS]);
             }
-            assert_eq!(T::dot(&x, &y), add_by_halves(sums));
+            let minus: Vec<T> = y.iter().map(|&y| -y).collect();
+            let expected = add_by_halves(sums);
+            assert_eq!(T::dots(&x, [&y, &minus]), [expected, -expected]);
         }
     }
 
     #[test]
-    fn dot_in_f64_and_f32() {
-        dot_agrees_with_the_definition::<f64>();
-        dot_agrees_with_the_definition::<f32>();
+    fn dots_in_f64_and_f32() {
+        dots_agree_with_the_definition::<f64>();
+        dots_agree_with_the_definition::<f32>();
     }
 
     #[test]
@@ -331,7 +369,7 @@ mod tests {
     fn room_for_fewer_points_is_refused() {
         let mut found = Found::default();
         f64::within([&[0.0; 20]], [0.0], 1.0, &mut found);
-        let mut room = std::array::from_fn(|s| vec![0.0; if s == 5 { 19 } else { 20 }]);
+        let mut room = std::array::from_fn(|s| vec![0.0; if s == 5 { 31 } else { 32 }]);
         f64::gather(&[[1.0; RECORD]; 20], &found, &mut room);
     }
 }

@@ -224,16 +224,13 @@ impl<D: Domain> Simulation<D> {
             time: self.clock.time(),
             partials: &mut self.partials,
         };
-        let mut name = String::new();
         let (stages, pacing) = (&mut self.model.whole, &mut self.model.pacing);
+        let mut at = 0;
         let outcome = catch_unwind(AssertUnwindSafe(|| -> Result<Pace, Fault> {
             for stage in stages {
-                name.clear();
-                name.push_str(stage.name());
                 stage.run(&mut whole)?;
+                at += 1;
             }
-            name.clear();
-            name.push_str("time step control");
             pacing.pace(&mut whole)
         }));
         let cause = match outcome {
@@ -247,7 +244,8 @@ impl<D: Domain> Simulation<D> {
             Ok(Err(fault)) => Cause::Fault(fault),
             Err(panic) => Cause::Panic(panic_message(panic)),
         };
-        Err(self.error_now(name, None, cause))
+        let stage = self.model.whole.get(at).map_or("time step control", |stage| stage.name());
+        Err(self.error_now(stage, None, cause))
     }
 
     /// Makes sure that all state is finite now, unless [`Settings::check_every`] is `None`.

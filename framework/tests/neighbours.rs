@@ -3,147 +3,10 @@
 mod models;
 
 use finegrain_framework::space::Cells;
-use finegrain_framework::space::cells::{CellsOptions, Region, Run};
+use finegrain_framework::space::cells::CellsOptions;
 use finegrain_framework::*;
 use models::random::Random;
-
-/// A particle, another one, and the image that it is seen through.
-type Pair = (usize, usize, [i64; 3]);
-
-/// Particles in cells.
-struct Case<T> {
-    columns: Columns,
-    position: Vec<State<T>>,
-    /// Where in the order before sorting a particle was.
-    number: State<u32>,
-    cells: Cells<T>,
-    options: CellsOptions,
-}
-
-impl<T: Real> Case<T> {
-    fn new(options: CellsOptions, points: &[Vec<f64>]) -> Self {
-        let dims = options.region.lower.len();
-        let mut columns = Columns::new(points.len());
-        let position: Vec<State<T>> =
-            (0..dims).map(|a| columns.state(&format!("position_{a}"))).collect();
-        let number = columns.state("number");
-        for (a, &position) in position.iter().enumerate() {
-            let values = columns.values_mut(position);
-            values.iter_mut().zip(points).for_each(|(x, point)| *x = T::of(point[a]));
-        }
-        let cells = Cells::new(&mut columns, &position, options.clone()).unwrap();
-        Self { columns, position, number, cells, options }
-    }
-
-    fn sort(&mut self, workers: usize) -> Result<(), Fault> {
-        let number = self.columns.values_mut(self.number);
-        number.iter_mut().zip(0..).for_each(|(number, i)| *number = i);
-        self.cells.sort(&mut self.columns, &mut Team::new(workers).unwrap())
-    }
-
-    fn dims(&self) -> usize {
-        self.position.len()
-    }
-
-    fn period(&self, a: usize) -> f64 {
-        let Region { lower, upper, periodic } = &self.options.region;
-        if periodic.get(a) == Some(&true) { upper[a] - lower[a] } else { 0.0 }
-    }
-
-    /// Whether `i` sees `j`, shifted, within range.
-    fn in_range(&self, i: usize, j: usize, shift: [f64; 3]) -> bool {
-        let squares = (0..self.dims()).map(|a| {
-            let x = self.columns.values(self.position[a]);
-            let d = x[i].as_f64() - (x[j].as_f64() + shift[a]);
-            d * d
-        });
-        squares.sum::<f64>() <= self.options.range * self.options.range
-    }
-
-    fn pairs_by_search(&self) -> Vec<Pair> {
-        let images: [i64; 3] = std::array::from_fn(|a| {
-            let period = self.period(a);
-            // Positions may have drifted out of the box by half a skin.
-            let far = self.options.range + self.options.skin;
-            if period > 0.0 { (far / period).ceil() as i64 + 1 } else { 0 }
-        });
-        let mut pairs = Vec::new();
-        for i in 0..self.columns.points() {
-            for j in 0..self.columns.points() {
-                for z in -images[2]..=images[2] {
-                    for y in -images[1]..=images[1] {
-                        for x in -images[0]..=images[0] {
-                            let image = [x, y, z];
-                            let shift = std::array::from_fn(|a| image[a] as f64 * self.period(a));
-                            if self.in_range(i, j, shift) {
-                                pairs.push((i, j, image));
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        pairs
-    }
-
-    /// What the stages see, in the order in which they see it.
-    fn runs(&self) -> Vec<(usize, Span, Vec<Run>)> {
-        let partition = self.cells.partition();
-        let mut all = Vec::new();
-        for id in 0..partition.len() {
-            let block = self.cells.sub_domain(id);
-            let mut points = 0;
-            for cell in block.cells() {
-                let mut runs = Vec::new();
-                block.candidates(cell, &mut runs);
-                for run in &runs {
-                    assert!(partition.sees(id, run.owner));
-                    let [span] = partition.spans(run.owner) else { panic!("several spans") };
-                    assert!(span.start <= run.span.start && run.span.end <= span.end);
-                }
-                points += cell.span.len();
-                all.push((id, cell.span, runs));
-            }
-            assert_eq!(points, block.points(), "a block's cells hold its particles");
-        }
-        all
-    }
-
-    fn pairs_by_cells(&self) -> Vec<Pair> {
-        let mut pairs = Vec::new();
-        for (_, span, runs) in self.runs() {
-            for i in span.range() {
-                for run in &runs {
-                    for j in run.span.range().filter(|&j| self.in_range(i, j, run.shift)) {
-                        let image = std::array::from_fn(|a| match self.period(a) {
-                            0.0 => 0,
-                            period => (run.shift[a] / period).round() as i64,
-                        });
-                        pairs.push((i, j, image));
-                    }
-                }
-            }
-        }
-        pairs.sort_unstable();
-        pairs
-    }
-
-    #[track_caller]
-    fn assert_all_pairs_found(&self, what: &str) {
-        let (mut expected, found) = (self.pairs_by_search(), self.pairs_by_cells());
-        expected.sort_unstable();
-        let missed: Vec<_> =
-            expected.iter().filter(|pair| found.binary_search(pair).is_err()).take(5).collect();
-        assert!(missed.is_empty(), "{what}: missed {missed:?} of {}", expected.len());
-        assert!(found == expected, "{what}: {} pairs instead of {}", found.len(), expected.len());
-    }
-}
-
-fn options(lower: &[f64], upper: &[f64], periodic: &[bool], range: f64, skin: f64) -> CellsOptions {
-    let region =
-        Region { lower: lower.to_vec(), upper: upper.to_vec(), periodic: periodic.to_vec() };
-    CellsOptions { region, range, skin, block_points: 6 }
-}
+use models::sorted::{Case, options, scattered};
 
 #[track_caller]
 fn assert_found<T: Real>(what: &str, options: &CellsOptions, points: &[Vec<f64>]) {
@@ -156,13 +19,6 @@ fn assert_found<T: Real>(what: &str, options: &CellsOptions, points: &[Vec<f64>]
 fn assert_found_in_both(what: &str, options: &CellsOptions, points: &[Vec<f64>]) {
     assert_found::<f64>(&format!("{what}, f64"), options, points);
     assert_found::<f32>(&format!("{what}, f32"), options, points);
-}
-
-fn scattered(random: &mut Random, points: usize, lower: &[f64], upper: &[f64]) -> Vec<Vec<f64>> {
-    let one = |random: &mut Random| {
-        lower.iter().zip(upper).map(|(l, u)| l + random.unit() * (u - l)).collect()
-    };
-    (0..points).map(|_| one(random)).collect()
 }
 
 #[test]
@@ -324,6 +180,20 @@ fn sorting_is_stable() {
         for &position in &case.position {
             case.columns.values_mut(position).iter_mut().for_each(|x| *x += 0.5 * random.unit());
         }
+    }
+}
+
+/// However thin the box, a block is worth its hand-out.
+#[test]
+fn blocks_have_about_the_points_asked_for() {
+    for [x, y, z] in [[40.0, 40.0, 40.0], [600.0, 10.0, 10.0], [60_000.0, 1.0, 1.0]] {
+        let mut options = options(&[0.0; 3], &[x, y, z], &[true; 3], 1.0, 0.0);
+        options.block_points = 100;
+        let points = scattered(&mut Random(10), 60_000, &[0.0; 3], &[x, y, z]);
+        let mut case = Case::<f64>::new(options, &points);
+        case.sort(1).unwrap();
+        let mean = 60_000 / case.cells.partition().len();
+        assert!((50..=200).contains(&mean), "{mean} points a block in a box of {x} x {y} x {z}");
     }
 }
 

@@ -17,7 +17,7 @@ pub const DENSITY: f64 = 1000.0;
 
 /// Parameters that every method shares.
 pub const PARAMETERS: [Parameter; 5] = [
-    Parameter::number("dim", 2.0, [2.0, 3.0], "", "dimensions, 2 or 3"),
+    Parameter::integer("dim", 2, [2, 3], "dimensions"),
     Parameter::number(
         "solid_fraction",
         PI * 0.04,
@@ -25,7 +25,7 @@ pub const PARAMETERS: [Parameter; 5] = [
         "",
         "part of the cell that the cylinder fills",
     ),
-    Parameter::number("resolution", 50.0, [10.0, 4000.0], "", "points across the cell"),
+    Parameter::integer("resolution", 50, [10, 4000], "points across the cell"),
     Parameter::number("viscosity", 1e-4, [1e-9, 1e3], "m^2/s", "kinematic viscosity"),
     Parameter::number("body_acceleration", 5e-5, [1e-15, 1e6], "m/s^2", "drives the flow along x"),
 ];
@@ -57,17 +57,13 @@ impl Cylinder {
         }
     }
 
-    /// Radius of the cylinder, m.
-    pub fn radius(&self) -> f64 {
-        SIDE * (self.solid_fraction / PI).sqrt()
-    }
-
-    /// The cylinder, in the middle of a cell with these side lengths.
-    pub fn body(&self, lengths: [f64; 3]) -> Shape {
+    /// The cylinder, in the middle of a cell with these side lengths, of which it fills the solid
+    /// fraction.
+    pub fn body(&self, [x, y, _]: [f64; 3]) -> Shape {
         Shape::Cylinder {
             axis: Axis::Z,
-            centre: [0.5 * lengths[0], 0.5 * lengths[1], 0.0],
-            radius: self.radius(),
+            centre: [0.5 * x, 0.5 * y, 0.0],
+            radius: (self.solid_fraction * x * y / PI).sqrt(),
         }
     }
 
@@ -80,25 +76,26 @@ impl Cylinder {
         self.body_acceleration * SIDE * SIDE / (self.viscosity * drag)
     }
 
-    /// `k = f L^2 / (nu U)`, with `U` the superficial mean velocity: averaged over the whole cell,
-    /// zero in the cylinder.
-    pub fn drag(&self, superficial_velocity: f64) -> f64 {
-        self.body_acceleration * SIDE * SIDE / (self.viscosity * superficial_velocity)
+    /// `k = f L^2 / (nu U)`, with `L^2` the area of the cell and `U` the superficial mean velocity:
+    /// averaged over the whole cell, zero in the cylinder.
+    pub fn drag(&self, superficial_velocity: f64, area: f64) -> f64 {
+        self.body_acceleration * area / (self.viscosity * superficial_velocity)
     }
 
-    /// The drag for these parameters from an independent solution, where there is one.
+    /// The drag for these parameters in a square cell from an independent solution, where there is
+    /// one.
     pub fn reference_drag(&self) -> Option<f64> {
         let is = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
         // f L^3 / nu^2 decides between creeping and inertial flow.
         let forcing = self.body_acceleration * SIDE.powi(3) / self.viscosity.powi(2);
-        if is(self.solid_fraction, PI * 0.04) {
-            if let Some(&(_, drag)) = INERTIAL.iter().find(|(g, _)| is(forcing, *g)) {
-                return Some(drag);
-            }
+        let inertial = INERTIAL.iter().find(|(g, _)| is(forcing, *g));
+        if let (Some(&(_, drag)), true) = (inertial, is(self.solid_fraction, PI * 0.04)) {
+            return Some(drag);
         }
-        // Inertia adds a part in 1e5 at forcing 5 and grows with its square.
+        // Inertia adds a part in 1e5 at forcing 5 and grows with its square (and the product that
+        // the defaults come to rounds to a little more than 5).
         let creeping = CREEPING.iter().find(|(phi, _)| is(self.solid_fraction, *phi))?;
-        (forcing <= 5.0).then_some(creeping.1)
+        (forcing < 5.001).then_some(creeping.1)
     }
 }
 
@@ -137,13 +134,17 @@ mod tests {
         assert_eq!(morris(1e-6, 1.5e-7).reference_drag(), Some(30.61015867));
         assert_eq!(morris(1e-4, 1e-6).reference_drag(), Some(30.35063565));
         assert_eq!(morris(1e-6, 1.5e-6).reference_drag(), None);
+        for (phi, drag) in [CREEPING[0], CREEPING[1], CREEPING[3], CREEPING[4]] {
+            let scene = Cylinder { solid_fraction: phi, ..morris(1e-4, 5e-5) };
+            assert_eq!(scene.reference_drag(), Some(drag));
+        }
     }
 
     #[test]
     fn the_estimate_is_near_the_reference_where_the_array_is_dilute() {
         for (phi, drag) in &CREEPING[..3] {
             let scene = Cylinder { solid_fraction: *phi, ..morris(1e-4, 5e-5) };
-            assert!((scene.drag(scene.creeping_velocity()) / drag - 1.0).abs() < 0.01);
+            assert!((scene.drag(scene.creeping_velocity(), SIDE * SIDE) / drag - 1.0).abs() < 0.01);
         }
     }
 }

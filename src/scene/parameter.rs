@@ -14,6 +14,15 @@ pub enum Kind {
         /// Largest allowed.
         most: f64,
     },
+    /// A whole number between two ends, both allowed.
+    Integer {
+        /// Default.
+        default: u32,
+        /// Smallest allowed.
+        least: u32,
+        /// Largest allowed.
+        most: u32,
+    },
     /// One of several names, the first being the default.
     Choice(&'static [&'static str]),
 }
@@ -37,6 +46,8 @@ pub struct Parameter {
 pub enum Value {
     /// A number.
     Number(f64),
+    /// A whole number.
+    Integer(u32),
     /// One of the names.
     Choice(String),
 }
@@ -78,6 +89,16 @@ impl Parameter {
         Self { name, kind: Kind::Number { default, least, most }, unit, help }
     }
 
+    /// A whole number with default and range.
+    pub const fn integer(
+        name: &'static str,
+        default: u32,
+        [least, most]: [u32; 2],
+        help: &'static str,
+    ) -> Self {
+        Self { name, kind: Kind::Integer { default, least, most }, unit: "", help }
+    }
+
     /// A choice among names, the first being the default.
     pub const fn choice(
         name: &'static str,
@@ -91,6 +112,7 @@ impl Parameter {
     pub fn default(&self) -> Value {
         match self.kind {
             Kind::Number { default, .. } => Value::Number(default),
+            Kind::Integer { default, .. } => Value::Integer(default),
             Kind::Choice(choices) => Value::Choice(choices[0].to_owned()),
         }
     }
@@ -104,6 +126,9 @@ impl Parameter {
             Kind::Number { least, most, .. } => {
                 format!("between {least:?} and {most:?} {}", self.unit).trim_end().to_owned()
             }
+            Kind::Integer { least, most, .. } => {
+                format!("a whole number between {least} and {most}")
+            }
             Kind::Choice(choices) => format!("one of {}", choices.join(", ")),
         }
     }
@@ -115,6 +140,9 @@ impl Parameter {
                 .ok()
                 .filter(|x: &f64| x.is_finite() && (least..=most).contains(x))
                 .map(Value::Number),
+            Kind::Integer { least, most, .. } => {
+                text.parse().ok().filter(|n: &u32| (least..=most).contains(n)).map(Value::Integer)
+            }
             Kind::Choice(choices) => {
                 choices.contains(&text).then(|| Value::Choice(text.to_owned()))
             }
@@ -160,6 +188,7 @@ impl Parameters {
     pub fn number(&self, name: &str) -> f64 {
         match self.0.get(name) {
             Some(Value::Number(x)) => *x,
+            Some(Value::Integer(n)) => f64::from(*n),
             other => panic!("parameter {name:?} is {other:?}, not a number"),
         }
     }
@@ -185,6 +214,7 @@ impl std::fmt::Display for Value {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Number(x) => write!(f, "{x:?}"),
+            Self::Integer(n) => write!(f, "{n}"),
             Self::Choice(text) => f.write_str(text),
         }
     }
@@ -195,7 +225,7 @@ mod tests {
     use super::*;
 
     const DECLARED: [Parameter; 2] = [
-        Parameter::number("resolution", 50.0, [8.0, 2000.0], "", "points across"),
+        Parameter::integer("resolution", 50, [8, 2000], "points across"),
         Parameter::choice("kernel", &["gaussian", "quintic-spline"], "smoothing kernel"),
     ];
 
@@ -208,14 +238,13 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named_with_what_would_be_right() {
-        let said = |setting| {
-            Parameters::new("x", &DECLARED, [setting]).unwrap_err().to_string()
-        };
+        let said = |setting| Parameters::new("x", &DECLARED, [setting]).unwrap_err().to_string();
         assert_eq!(
             said(("resolution", "7")),
-            "resolution = 7 is not valid: it must be between 8.0 and 2000.0"
+            "resolution = 7 is not valid: it must be a whole number between 8 and 2000"
         );
         assert!(said(("resolution", "NaN")).contains("resolution = NaN"));
+        assert!(said(("resolution", "24.6")).contains("a whole number"));
         assert!(said(("kernel", "cubic")).contains("one of gaussian, quintic-spline"));
         assert!(said(("resolutoin", "9")).contains("it has resolution, kernel"));
     }

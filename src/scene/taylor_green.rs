@@ -10,9 +10,9 @@ use super::parameter::{Parameter, Parameters};
 
 /// Parameters that every method shares.
 pub const PARAMETERS: [Parameter; 3] = [
-    Parameter::number("dim", 2.0, [2.0, 3.0], "", "dimensions, 2 or 3"),
+    Parameter::integer("dim", 2, [2, 3], "dimensions"),
     Parameter::number("reynolds", 100.0, [0.01, 1e6], "", "U L / nu"),
-    Parameter::number("resolution", 50.0, [8.0, 4000.0], "", "points across the box"),
+    Parameter::integer("resolution", 50, [8, 4000], "points across the box"),
 ];
 
 /// The scene with its parameters set.
@@ -81,11 +81,10 @@ mod tests {
             let time = (u(0.0, 0.0, h)[a] - u(0.0, 0.0, -h)[a]) / (2.0 * h);
             let along_x = (u(h, 0.0, 0.0)[a] - u(-h, 0.0, 0.0)[a]) / (2.0 * h);
             let along_y = (u(0.0, h, 0.0)[a] - u(0.0, -h, 0.0)[a]) / (2.0 * h);
-            let around = u(h, 0.0, 0.0)[a] + u(-h, 0.0, 0.0)[a] + u(0.0, h, 0.0)[a]
-                + u(0.0, -h, 0.0)[a];
+            let around =
+                u(h, 0.0, 0.0)[a] + u(-h, 0.0, 0.0)[a] + u(0.0, h, 0.0)[a] + u(0.0, -h, 0.0)[a];
             let laplacian = (around - 4.0 * here[a]) / (h * h);
-            let residual = time + here[0] * along_x + here[1] * along_y
-                + pressure[a] / (2.0 * h)
+            let residual = time + here[0] * along_x + here[1] * along_y + pressure[a] / (2.0 * h)
                 - laplacian / scene.reynolds;
             assert!(residual.abs() < 1e-5, "{residual}");
         }

@@ -10,7 +10,9 @@
 //!    queue is not the end. [`ReadyDispatch`] takes offers until all that was announced has
 //!    been handed out.
 //! 4. *Event driven*: a worker without work sleeps until a value arrives or the end is known;
-//!    nobody polls ([`waiting`]).
+//!    nobody polls (module `waiting`).
+
+use std::sync::OnceLock;
 
 pub(crate) mod deque;
 mod meeting;
@@ -22,7 +24,8 @@ pub use meeting::Meeting;
 pub use ready::{ReadyDispatch, Server};
 pub use sequence::Dispatch;
 
-/// Cores this process may use.
+/// Cores this process may use; asked for once, because the answer is read from files.
 pub(crate) fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, |n| n.get())
+    static CORES: OnceLock<usize> = OnceLock::new();
+    *CORES.get_or_init(|| std::thread::available_parallelism().map_or(1, |n| n.get()))
 }

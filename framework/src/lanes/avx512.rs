@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::{Found, RECORD, Record, SUMS, add_by_halves, transpose};
+use super::{Found, RECORD, Record, SUMS, add_by_halves};
 
 /// Whether this processor has what the functions below need.
 #[inline]
@@ -128,8 +128,8 @@ pub use double::{near_box_f64, within_f64};
 pub use single::{near_box_f32, within_f32};
 
 /// # Safety
-/// AVX-512 F is available, every index is inside `from`, and every lane of `to` is at least as
-/// long as `indices`.
+/// AVX-512 F is available, every index is inside `from`, there is a multiple of 8 of them, and
+/// every lane of `to` is at least as long as `indices`.
 #[target_feature(enable = "avx512f")]
 pub unsafe fn gather_f64(from: &[Record<f64>], indices: &[u32], to: &mut [Vec<f64>; RECORD]) {
     /// Pairs of 128-bit parts (0, 2) of both, and (1, 3) of both.
@@ -159,7 +159,6 @@ pub unsafe fn gather_f64(from: &[Record<f64>], indices: &[u32], to: &mut [Vec<f6
             }
         }
     }
-    transpose(from, indices, to, chunks.len() * 8);
 }
 
 /// # Safety
@@ -194,43 +193,59 @@ pub unsafe fn gather_f32(from: &[Record<f32>], indices: &[u32], to: &mut [Vec<f3
             }
         }
     }
-    transpose(from, indices, to, chunks.len() * 8);
 }
 
 /// # Safety
-/// AVX-512 F is available; `a` and `b` have the same length, a multiple of `SUMS`.
+/// AVX-512 F is available; `a` and all of `b` have the same length, a multiple of `SUMS`.
 #[inline]
 #[target_feature(enable = "avx512f")]
-pub unsafe fn dot_f64(a: &[f64], b: &[f64]) -> f64 {
-    let (mut low, mut high) = (_mm512_setzero_pd(), _mm512_setzero_pd());
+pub unsafe fn dots_f64<const N: usize>(a: &[f64], b: [&[f64]; N]) -> [f64; N] {
+    let mut low = [_mm512_setzero_pd(); N];
+    let mut high = [_mm512_setzero_pd(); N];
     for k in (0..a.len()).step_by(SUMS) {
-        // SAFETY: k + 16 is at most both lengths.
+        // SAFETY: k + 16 is at most all lengths.
         unsafe {
-            let (a, b) = (a.as_ptr().add(k), b.as_ptr().add(k));
-            low = _mm512_fmadd_pd(_mm512_loadu_pd(a), _mm512_loadu_pd(b), low);
-            high = _mm512_fmadd_pd(_mm512_loadu_pd(a.add(8)), _mm512_loadu_pd(b.add(8)), high);
+            let a = a.as_ptr().add(k);
+            let (first, second) = (_mm512_loadu_pd(a), _mm512_loadu_pd(a.add(8)));
+            for n in 0..N {
+                let b = b[n].as_ptr().add(k);
+                low[n] = _mm512_fmadd_pd(first, _mm512_loadu_pd(b), low[n]);
+                high[n] = _mm512_fmadd_pd(second, _mm512_loadu_pd(b.add(8)), high[n]);
+            }
         }
     }
-    let eight = _mm512_add_pd(low, high);
-    let four = _mm256_add_pd(_mm512_castpd512_pd256(eight), _mm512_extractf64x4_pd::<1>(eight));
-    let two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
-    _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)))
+    let mut sums = [0.0; N];
+    for n in 0..N {
+        let eight = _mm512_add_pd(low[n], high[n]);
+        let upper = _mm512_extractf64x4_pd::<1>(eight);
+        let four = _mm256_add_pd(_mm512_castpd512_pd256(eight), upper);
+        let two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
+        sums[n] = _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
+    }
+    sums
 }
 
 /// # Safety
-/// As [`dot_f64`].
+/// As [`dots_f64`].
 #[inline]
 #[target_feature(enable = "avx512f")]
-pub unsafe fn dot_f32(a: &[f32], b: &[f32]) -> f32 {
-    let mut sums = _mm512_setzero_ps();
+pub unsafe fn dots_f32<const N: usize>(a: &[f32], b: [&[f32]; N]) -> [f32; N] {
+    let mut lanes = [_mm512_setzero_ps(); N];
     for k in (0..a.len()).step_by(SUMS) {
-        // SAFETY: k + 16 is at most both lengths.
-        let (a, b) =
-            unsafe { (_mm512_loadu_ps(a.as_ptr().add(k)), _mm512_loadu_ps(b.as_ptr().add(k))) };
-        sums = _mm512_fmadd_ps(a, b, sums);
+        // SAFETY: k + 16 is at most all lengths.
+        unsafe {
+            let first = _mm512_loadu_ps(a.as_ptr().add(k));
+            for n in 0..N {
+                lanes[n] = _mm512_fmadd_ps(first, _mm512_loadu_ps(b[n].as_ptr().add(k)), lanes[n]);
+            }
+        }
     }
-    let mut stored = [0.0; SUMS];
-    // SAFETY: `stored` holds 16 elements.
-    unsafe { _mm512_storeu_ps(stored.as_mut_ptr(), sums) };
-    add_by_halves(stored)
+    let mut sums = [0.0; N];
+    for n in 0..N {
+        let mut stored = [0.0; SUMS];
+        // SAFETY: `stored` holds 16 elements.
+        unsafe { _mm512_storeu_ps(stored.as_mut_ptr(), lanes[n]) };
+        sums[n] = add_by_halves(stored);
+    }
+    sums
 }

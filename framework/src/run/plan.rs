@@ -187,6 +187,11 @@ impl<D: Domain> Run<D> {
         &self.simulation
     }
 
+    /// Gives the simulation back, to go on with it otherwise.
+    pub fn into_simulation(self) -> Simulation<D> {
+        self.simulation
+    }
+
     /// The simulation, to look at it with its team.
     pub fn simulation_mut(&mut self) -> &mut Simulation<D> {
         &mut self.simulation

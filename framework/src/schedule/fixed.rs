@@ -15,7 +15,7 @@ impl Fixed {
         Self { meeting: Meeting::new(workers) }
     }
 
-    pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: Order) {
+    pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: &Order) {
         let (sub_domains, workers) = (work.partition().len(), team.workers());
         let stop = AtomicBool::new(false);
         let meeting = &self.meeting;

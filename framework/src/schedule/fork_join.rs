@@ -17,7 +17,7 @@ impl ForkJoin {
         Ok(Self { pool })
     }
 
-    pub fn run(&mut self, work: &dyn Work, order: Order) {
+    pub fn run(&mut self, work: &dyn Work, order: &Order) {
         for step in work.steps() {
             for part in 0..work.parts() {
                 self.pool.install(|| {

@@ -15,7 +15,7 @@ impl Lockstep {
         Self { dispatch: Dispatch::new(0, 1, workers) }
     }
 
-    pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: Order) {
+    pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: &Order) {
         let sub_domains = work.partition().len();
         self.dispatch.reset(sub_domains, chunk(sub_domains, team.workers()));
         let dispatch = &self.dispatch;

@@ -11,6 +11,7 @@ pub use order::HandOut;
 
 use crate::leg::Work;
 use crate::team::Team;
+use order::Order;
 
 /// How workers meet (Holmes et al. 2011, Fig. 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -67,6 +68,7 @@ impl std::str::FromStr for Schedule {
 pub(crate) struct Executor {
     schedule: Schedule,
     hand_out: HandOut,
+    order: Order,
     team: Team,
     protocol: Protocol,
 }
@@ -99,7 +101,8 @@ impl Executor {
             Schedule::ForkJoin => Protocol::ForkJoin(fork_join::ForkJoin::new(workers)?),
             Schedule::Fixed => Protocol::Fixed(fixed::Fixed::new(workers).into()),
         };
-        Ok(Self { schedule, hand_out, team: Team::new(workers)?, protocol })
+        let order = Order::default();
+        Ok(Self { schedule, hand_out, order, team: Team::new(workers)?, protocol })
     }
 
     pub fn schedule(&self) -> Schedule {
@@ -113,7 +116,8 @@ impl Executor {
 
     /// Runs all parts of all steps of `work` on all its sub-domains.
     pub fn run(&mut self, work: &dyn Work) {
-        let order = self.hand_out.order(work.partition().len(), work.steps().start);
+        self.order.arrange(&self.hand_out, work.partition().len(), work.steps().start);
+        let order = &self.order;
         match &mut self.protocol {
             Protocol::Serial => serial::run(work, order),
             Protocol::Lockstep(lockstep) => lockstep.run(&mut self.team, work, order),

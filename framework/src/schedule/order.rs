@@ -13,31 +13,30 @@ pub enum HandOut {
     },
 }
 
-impl HandOut {
-    /// The order for a leg beginning at `step`.
-    pub(crate) fn order(&self, sub_domains: usize, step: u64) -> Order {
-        match self {
-            Self::Natural => Order(None),
-            Self::Shuffled { seed } => {
-                let mut random = SplitMix(seed.wrapping_add(step.wrapping_mul(0x9e37_79b9)));
-                let mut ids: Vec<u32> = (0..sub_domains as u32).collect();
-                for i in (1..ids.len()).rev() {
-                    ids.swap(i, (random.next() % (i as u64 + 1)) as usize);
-                }
-                Order(Some(ids))
+/// A permutation of the sub-domains, in memory that is kept from leg to leg.
+#[derive(Default)]
+pub(crate) struct Order {
+    /// Empty for the natural order.
+    ids: Vec<u32>,
+}
+
+impl Order {
+    /// Becomes the order for a leg beginning at `step`.
+    pub fn arrange(&mut self, hand_out: &HandOut, sub_domains: usize, step: u64) {
+        self.ids.clear();
+        if let HandOut::Shuffled { seed } = hand_out {
+            let mut random = SplitMix(seed.wrapping_add(step.wrapping_mul(0x9e37_79b9)));
+            self.ids.extend(0..sub_domains as u32);
+            for i in (1..sub_domains).rev() {
+                self.ids.swap(i, (random.next() % (i as u64 + 1)) as usize);
             }
         }
     }
-}
 
-/// A permutation of the sub-domains, or none.
-pub(crate) struct Order(Option<Vec<u32>>);
-
-impl Order {
     /// The sub-domain at place `place`.
     #[inline]
     pub fn at(&self, place: usize) -> usize {
-        self.0.as_ref().map_or(place, |ids| ids[place] as usize)
+        if self.ids.is_empty() { place } else { self.ids[place] as usize }
     }
 }
 

@@ -39,7 +39,7 @@ impl PeerToPeer {
         }
     }
 
-    pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: Order) {
+    pub fn run(&mut self, team: &mut Team, work: &dyn Work, order: &Order) {
         let partition = work.partition();
         let parts = work.parts() as u32;
         let steps = work.steps();

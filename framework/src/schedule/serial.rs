@@ -4,7 +4,7 @@ use super::order::Order;
 use crate::leg::Work;
 
 /// Runs every part of every step over all sub-domains in order.
-pub(super) fn run(work: &dyn Work, order: Order) {
+pub(super) fn run(work: &dyn Work, order: &Order) {
     for step in work.steps() {
         for part in 0..work.parts() {
             for place in 0..work.partition().len() {

@@ -7,3 +7,4 @@ pub mod heat;
 pub mod particles;
 pub mod plate;
 pub mod random;
+pub mod sorted;

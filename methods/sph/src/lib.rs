@@ -1,4 +1,51 @@
 //! Smoothed particle hydrodynamics on the finegrain framework.
+//!
+//! The formulation of Holmes, Williams & Tilke (2011), composed of terms: conservation of mass
+//! (I.1), momentum (I.2) with pressure and viscosity, and energy (I.3) where a scene asks for it;
+//! an equation of state for weakly compressible flow; bodies filled with particles at rest. What a
+//! scene does not name has no columns and no loops. 1-D, 2-D and 3-D, `f32` and `f64`.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `term/` | one sum over neighbours each, reading like its equation |
+//! | `sweep.rs` | a rate stage: gathers the neighbours of a particle once and runs the terms over them |
+//! | `neighbourhood.rs` | candidates of a cell, neighbours of a particle, in lanes |
+//! | [`kernel`] | smoothing functions |
+//! | [`packing`] | lattices that are exactly periodic |
+//! | [`model`] | what a scene chooses, checked and built into a framework model |
+//!
+//! # Example
+//! A disc of shear in a periodic box.
+//! ```
+//! use finegrain_framework::space::cells::Region;
+//! use finegrain_framework::{Settings, Simulation};
+//! use finegrain_sph::{
+//!     Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation, Viscosity, measure,
+//! };
+//!
+//! let lattice = Packing::Square.fit([1.0; 3], 0.05)?;
+//! let positions: Vec<_> = lattice.positions().collect();
+//! let start = Start {
+//!     region: Region { lower: vec![0.0; 2], upper: vec![1.0; 2], periodic: vec![true; 2] },
+//!     spacing: 0.05,
+//!     particle_volume: lattice.volume_per_particle(),
+//!     velocities: positions.iter().map(|x| [(std::f64::consts::TAU * x[1]).sin(), 0.0, 0.0]).collect(),
+//!     positions,
+//! };
+//! let fluid = Fluid {
+//!     density: 1000.0,
+//!     sound_speed: 10.0,
+//!     kinematic_viscosity: 0.01,
+//!     state_equation: StateEquation::Linear { background: 0.0 },
+//! };
+//! let physics = Physics { viscosity: Some(Viscosity::Morris), ..Physics::default() };
+//! let sph = Sph::<f64>::new(&start, &fluid, &physics, &Scheme::default())?;
+//! let mut simulation = Simulation::new(sph.model, Settings::default())?;
+//! simulation.advance(50)?;
+//! let totals = measure::totals(&mut simulation.whole(), &sph.fields, sph.particle_mass);
+//! assert!(totals.kinetic_energy < 250.0 && totals.momentum[0].abs() < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 

@@ -71,3 +71,36 @@ pub fn largest_speed<T: Real>(whole: &mut Whole<'_, Cells<T>>, fields: &Fields<T
     });
     squared.sqrt()
 }
+
+/// Number of neighbours within the range of interaction that a particle has on average, itself not
+/// counted; images through which a particle is seen several times count each.
+pub fn mean_neighbours<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> f64 {
+    // Pairs exactly the range apart do not interact.
+    let range = T::of(whole.domain.range()) * (T::one() - T::epsilon().sqrt());
+    let positions = whole.domain.positions().to_vec();
+    let points = whole.columns.points() as f64;
+    let [pairs] = whole.sum(|near| {
+        let block = near.sub_domain();
+        let (mut runs, mut pairs) = (Vec::new(), 0);
+        let own: Vec<_> = positions.iter().map(|&x| near.state(x).own().whole()).collect();
+        let first = near.spans()[0].start;
+        for cell in block.cells() {
+            block.candidates(cell, &mut runs);
+            for run in &runs {
+                let reach = near.reach(run.owner, run.span);
+                let seen: Vec<_> = positions.iter().map(|&x| near.state(x).at(reach)).collect();
+                for i in cell.span.range() {
+                    for j in 0..run.span.len() {
+                        let squared = own.iter().zip(&seen).enumerate().map(|(a, (own, seen))| {
+                            let d = own[i - first] - (seen[j] + T::of(run.shift[a]));
+                            d * d
+                        });
+                        pairs += u64::from(squared.sum::<T>() < range * range);
+                    }
+                }
+            }
+        }
+        [pairs as f64]
+    });
+    pairs / points - 1.0
+}

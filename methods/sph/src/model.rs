@@ -4,7 +4,7 @@ use finegrain_framework::shape::{Shape, ShapeError};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::{CellsOptions, Region};
 use finegrain_framework::{
-    Columns, Evolution, Fault, Integrator, Model, PartitionError, Real, Stage,
+    Columns, Evolution, Fault, Handle, Integrator, Model, PartitionError, Real, Stage,
 };
 
 use crate::dimension::Dimension;
@@ -293,6 +293,10 @@ fn build<T: Real, const D: usize>(
         }));
     }
 
+    // The time step follows from the last accelerations: they must survive a restart.
+    for &acceleration in &fields.acceleration {
+        columns.keep(acceleration.id());
+    }
     let mut evolution = Evolution::new().with(fields.density, fields.density_rate);
     for a in 0..D {
         evolution = evolution

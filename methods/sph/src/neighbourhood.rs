@@ -1,6 +1,6 @@
 //! What a particle sees of its neighbours: gathered once, into lanes that every term runs over.
 
-use finegrain_framework::lanes::{Found, RECORD, Record, SUMS};
+use finegrain_framework::lanes::{Found, RECORD, Record};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::{Cell, CellBlock, Run};
 use finegrain_framework::{Near, Rate, Real, State, View};
@@ -134,7 +134,7 @@ impl<T: Real, const D: usize> Candidates<T, D> {
             position[a].at(own).iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
         });
         // Shifting the box instead of the particles rounds differently: allow for it.
-        let range = range * T::of(1.0 + 1e-5);
+        let range = range * (T::one() + T::epsilon().sqrt());
         block.candidates(cell, &mut self.runs);
         self.position.iter_mut().for_each(Vec::clear);
         self.pages.resize_with(gathered.pages().len(), Vec::new);
@@ -251,20 +251,18 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         particle: &Particle<T, D>,
         kernel: &Kernel<T>,
     ) {
-        let support = kernel.support_radius();
+        // On a lattice many pairs are exactly the support apart, and rounding would decide, for
+        // each of the two by itself, whether they interact: leave them all out.
+        let support = kernel.support_radius() * (T::one() - T::epsilon().sqrt());
         let positions = std::array::from_fn(|a| &candidates.position[a][..]);
         T::within(positions, particle.position, support * support, &mut self.found);
-        let count = self.found.len();
-        let padded = count.next_multiple_of(SUMS);
+        let (count, padded) = (self.found.len(), self.found.padded());
         self.padded = padded;
         if self.distance_squared.len() < padded || self.pages.len() != gathered.pages().len() {
             self.grow(padded, gathered);
         }
         for (page, records) in self.pages.iter_mut().zip(&candidates.pages) {
             T::gather(records, &self.found, page);
-            for lane in page {
-                lane[count..padded].fill(T::zero());
-            }
         }
         let distance_squared = &mut self.distance_squared[..padded];
         distance_squared.fill(T::zero());
@@ -276,10 +274,10 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
                 *r2 = d.mul_add(*d, *r2);
             }
         }
-        distance_squared[count..].fill(T::infinity());
-        kernel.gradient_factor(distance_squared, &mut self.gradient_factor[..padded]);
-        // From here on the padding's distance only has to be finite.
-        distance_squared[count..].fill(T::zero());
+        let gradient_factor = &mut self.gradient_factor[..padded];
+        kernel.gradient_factor(distance_squared, gradient_factor);
+        // The padding repeats a neighbour: it must have no effect.
+        gradient_factor[count..].fill(T::zero());
     }
 
     #[cold]
@@ -300,6 +298,16 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[inline(always)]
     pub fn difference(&self, a: usize) -> &[T] {
         &self.pages[0][a][..self.padded]
+    }
+
+    /// `sum_j weight_j (x_i - x_j)`.
+    #[inline(always)]
+    pub fn sum_differences(&self, weight: &[T]) -> [T; D] {
+        let mut differences = [weight; D];
+        for a in 0..D {
+            differences[a] = self.difference(a);
+        }
+        T::dots(weight, differences)
     }
 
     /// `|x_i - x_j|^2`.

@@ -61,18 +61,30 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
         let sound_limit = 0.25 * h / (self.sound_speed + speed);
         let viscous_limit = 0.125 * h * h / self.kinematic_viscosity;
         let force_limit = 0.25 * (h / acceleration).sqrt();
-        let dt = self.courant_number * sound_limit.min(viscous_limit).min(force_limit);
         if !(speed.is_finite() && acceleration.is_finite()) {
             return Err(Fault::new(format!(
                 "largest speed {speed} m/s and acceleration {acceleration} m/s^2 must be finite"
             )));
         }
-        // A particle moves by at most n dt v + (n dt)^2 a in n steps, a factor of two allowed for
-        // accelerations that grow meanwhile.
+        if speed > self.sound_speed {
+            return Err(Fault::new(format!(
+                "largest speed {speed:.3e} m/s; it must be at most the sound speed, {:.3e} m/s: the \
+                 time step is past stability, or the sound speed too low",
+                self.sound_speed
+            )));
+        }
+        // A particle moves by at most t v + t^2 a in the time t, a factor of two allowed for
+        // accelerations that grow meanwhile. That must stay within the skin.
         let slack = 0.8 * whole.domain.slack();
-        let reach = |n: f64| n * dt * speed + (n * dt).powi(2) * acceleration;
+        let reach = |time: f64| time * speed + time * time * acceleration;
+        let skin_limit =
+            2.0 * slack / (speed + (speed * speed + 4.0 * acceleration * slack).sqrt());
+        let stable = self.courant_number * sound_limit.min(viscous_limit).min(force_limit);
+        let dt = stable.min(skin_limit);
+        // Accelerations are not known before the first step: look again after it.
+        let most_steps = if whole.step == 0 { 1 } else { self.most_steps };
         let mut steps = 1;
-        while steps < self.most_steps && reach((steps + 1) as f64) < slack {
+        while steps < most_steps && reach((steps + 1) as f64 * dt) < slack {
             steps += 1;
         }
         Ok(Pace { dt, steps })

@@ -35,7 +35,7 @@ impl Walls {
                         }
                         let seen = std::array::from_fn(|a| centre[a] + shift[a]);
                         if shape.signed_distance(seen) < half_diagonal + range {
-                            bodies.push((shape.clone(), shift));
+                            bodies.push((*shape, shift));
                         }
                     }
                 }

@@ -3,8 +3,11 @@
 
 mod flow;
 
-use finegrain_framework::Settings;
-use finegrain_sph::{Viscosity, measure};
+use finegrain_framework::space::cells::Region;
+use finegrain_framework::{Real, Settings, Simulation};
+use finegrain_sph::{
+    Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation, Viscosity, measure,
+};
 
 #[test]
 fn momentum_to_round_off() {
@@ -29,4 +32,46 @@ fn momentum_to_round_off() {
             assert!(now.kinetic_energy < before.kinetic_energy);
         }
     }
+}
+
+/// On a lattice many pairs are exactly the kernel's support apart. Whether they interact must not
+/// be decided by rounding, for each of the two by itself.
+fn momentum_on_a_perfect_lattice<T: Real>(most: f64) {
+    for cells in [16, 20, 25, 30] {
+        let spacing = 1.0 / f64::from(cells);
+        let lattice = Packing::Square.fit([1.0; 3], spacing).unwrap();
+        let positions: Vec<_> = lattice.positions().collect();
+        let wave = |x: f64| (std::f64::consts::TAU * x).sin();
+        let start = Start {
+            region: Region { lower: vec![0.0; 2], upper: vec![1.0; 2], periodic: vec![true; 2] },
+            spacing,
+            particle_volume: lattice.volume_per_particle(),
+            velocities: positions.iter().map(|x| [wave(x[1]), wave(x[0]), 0.0]).collect(),
+            positions,
+        };
+        let fluid = Fluid {
+            density: 1.0,
+            sound_speed: 10.0,
+            kinematic_viscosity: 0.01,
+            // A large pressure everywhere makes every pair that acts on one side only count.
+            state_equation: StateEquation::Linear { background: 1.0 },
+        };
+        let physics = Physics { viscosity: Some(Viscosity::Morris), ..Physics::default() };
+        let sph = Sph::<T>::new(&start, &fluid, &physics, &Scheme::default()).unwrap();
+        let mut simulation = Simulation::new(sph.model, Settings::default()).unwrap();
+        simulation.advance(1).unwrap();
+        let totals = measure::totals(&mut simulation.whole(), &sph.fields, sph.particle_mass);
+        let change = totals.momentum[0].hypot(totals.momentum[1]);
+        assert!(change < most, "{cells} cells: {change:e}");
+    }
+}
+
+#[test]
+fn momentum_on_a_perfect_lattice_in_f64() {
+    momentum_on_a_perfect_lattice::<f64>(1e-14);
+}
+
+#[test]
+fn momentum_on_a_perfect_lattice_in_f32() {
+    momentum_on_a_perfect_lattice::<f32>(1e-5);
 }

@@ -182,7 +182,7 @@ impl<T: Real> Cells<T> {
         self.lattice = self.fit(columns);
         let dims = self.dims();
         let lattice = &self.lattice;
-        let at: Vec<&[T]> = self.positions.iter().map(|&p| columns.values(p)).collect();
+        let at = values_of(columns, &self.positions);
         let moved = self.sorter.sort(team, columns.points(), lattice.sort_keys(), |i| {
             lattice.sort_key(lattice.coordinates(position(&at[..dims], i)))
         });
@@ -256,18 +256,26 @@ impl<T: Real> Cells<T> {
         // underestimate for a sparse one; blocks are then a little large.
         let cells: f64 = lattice.counts.iter().map(|&n| n as f64).product();
         let per_cell = (columns.points() as f64 / cells).max(1.0);
-        let edge =
-            (self.block_points as f64 / per_cell).powf(1.0 / dims as f64).round().max(1.0) as i64;
-        for a in 0..dims {
+        // As long in every direction as can be, where there are few cells first: what is missing
+        // there, the other directions make up for.
+        let mut wanted = self.block_points as f64 / per_cell;
+        let mut axes = [0, 1, 2];
+        axes[..dims].sort_unstable_by_key(|&a| lattice.counts[a]);
+        for (&a, left) in axes[..dims].iter().zip((1..=dims).rev()) {
+            let edge = wanted.max(1.0).powf(1.0 / left as f64).round() as i64;
             lattice.block[a] = edge.min(lattice.counts[a]);
+            wanted /= lattice.block[a] as f64;
         }
         lattice
     }
 
     fn reorder(&mut self, columns: &mut Columns, team: &mut Team) {
-        let kept: Vec<_> =
-            columns.iter().filter(|(_, c)| c.is_kept()).map(|(id, c)| (id, c.kind())).collect();
-        for (id, kind) in kept {
+        for id in columns.ids() {
+            let column = columns.column(id);
+            let kind = column.kind();
+            if !column.is_kept() {
+                continue;
+            }
             self.spare.resize(columns.lines(id), Line::zeroed());
             let from = columns.bytes(id);
             let sorter = &self.sorter;
@@ -349,6 +357,11 @@ fn first_inside<T: Real>(lower: f64) -> T {
     if first.as_f64() < lower { first + T::epsilon() * first.abs() } else { first }
 }
 
+/// The values of up to three columns.
+fn values_of<'a, T: Real>(columns: &'a Columns, of: &[State<T>]) -> [&'a [T]; 3] {
+    std::array::from_fn(|a| of.get(a).map_or(&[][..], |&column| columns.values(column)))
+}
+
 /// Position number `i`, zero in directions that do not exist.
 #[inline]
 fn position<T: Real>(at: &[&[T]], i: usize) -> [f64; 3] {
@@ -391,14 +404,20 @@ impl<T: Real> Domain for Cells<T> {
     }
 
     fn check(&self, near: &Near<'_, Self>) -> Result<(), Fault> {
+        let own = |column: Option<&State<T>>| match column {
+            Some(&column) => near.state(column).own().whole(),
+            None => &[],
+        };
+        let now: [_; 3] = std::array::from_fn(|a| own(self.positions.get(a)));
+        let then: [_; 3] = std::array::from_fn(|a| own(self.sorted_at.get(a)));
+        let dims = self.dims();
         let mut worst = (0.0, 0);
-        for i in 0..near.spans()[0].len() {
-            let mut moved = 0.0;
-            for (&now, &then) in self.positions.iter().zip(&self.sorted_at) {
-                let d =
-                    (near.state(now).own().whole()[i] - near.state(then).own().whole()[i]).as_f64();
-                moved += d * d;
-            }
+        for i in 0..now[0].len() {
+            let squares = (0..dims).map(|a| {
+                let d = (now[a][i] - then[a][i]).as_f64();
+                d * d
+            });
+            let moved: f64 = squares.sum();
             if moved > worst.0 || moved.is_nan() {
                 worst = (moved, i);
             }
@@ -441,10 +460,10 @@ impl<T: Real> Domain for Cells<T> {
             return Err(wrong());
         }
         // The particles are in order already, and their cells are those of the last sort.
-        let at: Vec<&[T]> = self.sorted_at.iter().map(|&p| columns.values(p)).collect();
+        let (at, dims) = (values_of(columns, &self.sorted_at), self.dims());
         let mut alone = Team::new(1).map_err(|e| Fault::new(e.to_string()))?;
         let moved = self.sorter.sort(&mut alone, columns.points(), lattice.sort_keys(), |i| {
-            lattice.sort_key(lattice.coordinates(position(&at, i)))
+            lattice.sort_key(lattice.coordinates(position(&at[..dims], i)))
         });
         if moved {
             return Err(wrong());

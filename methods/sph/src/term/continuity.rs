@@ -15,13 +15,13 @@ pub(crate) fn continuity<T: Real, const D: usize>(
 ) -> T {
     let factor = near.gradient_factor();
     let [jump, _] = work.lanes(factor.len());
-    let mut sum = T::zero();
+    jump.fill(T::zero());
     for a in 0..D {
         let (v, dx) = (near.values(Quantity::Velocity(a)), near.difference(a));
         for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
-            *jump = (i.velocity[a] - v) * dx;
+            *jump = (i.velocity[a] - v).mul_add(dx, *jump);
         }
-        sum += T::dot(jump, factor);
     }
+    let [sum] = T::dots(factor, [&*jump]);
     mass * sum
 }

@@ -14,6 +14,11 @@ pub(crate) struct Energy<T> {
 }
 
 impl<T: Real> Energy<T> {
+    /// Whether there is heating by shear.
+    pub fn is_viscous(&self) -> bool {
+        self.dynamic_viscosity != T::zero()
+    }
+
     /// `d e_i / dt = 1/2 sum_j m_j (p_i / rho_i^2 + p_j / rho_j^2) v_ij . grad_i W_ij
     ///  + mu / (2 rho_i) epsilon_i : epsilon_i`, W/kg, for equal masses `m`.
     #[inline(always)]
@@ -37,11 +42,12 @@ impl<T: Real> Energy<T> {
             for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
                 *jump = (i.velocity[a] - v) * dx;
             }
-            sum += T::dot(weight, jump);
+            let [along] = T::dots(weight, [&*jump]);
+            sum += along;
         }
         let half = T::of(0.5);
         let compression = half * mass * sum;
-        if self.dynamic_viscosity == T::zero() {
+        if !self.is_viscous() {
             return compression;
         }
         // stress_term = mu epsilon / rho^2.

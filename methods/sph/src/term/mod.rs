@@ -55,8 +55,10 @@ impl<T: Real> Term<T> {
             }
             Self::PressureGradient => vec![Quantity::PressureTerm],
             Self::StressDivergence => stress.chain([Quantity::WallDepth]).collect(),
-            Self::Energy(_) => {
-                velocity.chain(stress).chain([Quantity::Volume, Quantity::PressureTerm]).collect()
+            Self::Energy(energy) => {
+                let own = if energy.is_viscous() { stress.collect() } else { Vec::new() };
+                let others = [Quantity::Volume, Quantity::PressureTerm];
+                velocity.chain(own).chain(others).collect()
             }
         }
     }

@@ -20,9 +20,9 @@ pub(crate) fn pressure_gradient<T: Real, const D: usize>(
     for ((weight, &factor), &p) in weight.iter_mut().zip(factor).zip(pressure_term) {
         *weight = factor * (i.pressure_term + p);
     }
-    let mut acceleration = [T::zero(); D];
-    for (a, acceleration) in acceleration.iter_mut().enumerate() {
-        *acceleration = -mass * T::dot(weight, near.difference(a));
+    let mut acceleration = near.sum_differences(weight);
+    for a in 0..D {
+        acceleration[a] *= -mass;
     }
     acceleration
 }
@@ -69,9 +69,10 @@ pub(crate) fn stress_divergence<T: Real, const D: usize>(
                     }
                 }
             }
-            acceleration[a] += mass * T::dot(weight, near.difference(b));
+            let sums = T::dots(weight, [near.difference(a), near.difference(b)]);
+            acceleration[a] += mass * sums[1];
             if a != b {
-                acceleration[b] += mass * T::dot(weight, near.difference(a));
+                acceleration[b] += mass * sums[0];
             }
         }
     }

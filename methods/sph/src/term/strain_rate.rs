@@ -42,9 +42,7 @@ impl<T: Real> StrainRate<T> {
             for ((jump, &weight), &v) in jump.iter_mut().zip(&*weight).zip(v) {
                 *jump = weight * (v - i.velocity[a]);
             }
-            for b in 0..D {
-                gradient[a][b] = T::dot(jump, near.difference(b));
-            }
+            gradient[a] = near.sum_differences(jump);
         }
         let divergence = (0..D).fold(T::zero(), |sum, a| sum + gradient[a][a]);
         let scale = self.dynamic_viscosity / (density * density);

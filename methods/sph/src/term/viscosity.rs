@@ -45,7 +45,8 @@ impl<T: Real> Morris<T> {
             for (jump, &v) in jump.iter_mut().zip(near.values(Quantity::Velocity(a))) {
                 *jump = i.velocity[a] - v;
             }
-            *acceleration = scale * T::dot(weight, jump);
+            let [sum] = T::dots(weight, [&*jump]);
+            *acceleration = scale * sum;
         }
         acceleration
     }

@@ -1,0 +1,84 @@
+//! Bad input gets an error that names what and where, and never a panic.
+
+use finegrain_framework::shape::{Axis, Shape};
+use finegrain_framework::space::cells::Region;
+use finegrain_framework::{Settings, Simulation};
+use finegrain_sph::{Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation};
+
+fn start() -> Start {
+    let lattice = Packing::Square.fit([1.0; 3], 0.1).unwrap();
+    Start {
+        region: Region { lower: vec![0.0; 2], upper: vec![1.0; 2], periodic: vec![true; 2] },
+        spacing: 0.1,
+        particle_volume: lattice.volume_per_particle(),
+        positions: lattice.positions().collect(),
+        velocities: Vec::new(),
+    }
+}
+
+const FLUID: Fluid = Fluid {
+    density: 1.0,
+    sound_speed: 10.0,
+    kinematic_viscosity: 0.1,
+    state_equation: StateEquation::Linear { background: 0.0 },
+};
+
+fn complaint(start: &Start, fluid: &Fluid, physics: &Physics, scheme: &Scheme) -> String {
+    match Sph::<f64>::new(start, fluid, physics, scheme) {
+        Ok(_) => panic!("must be refused"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn numbers_outside_their_range() {
+    let (physics, scheme) = (Physics::default(), Scheme::default());
+    let of_fluid = |fluid: Fluid| complaint(&start(), &fluid, &physics, &scheme);
+    assert!(of_fluid(Fluid { density: 0.0, ..FLUID }).contains("density is 0"));
+    assert!(of_fluid(Fluid { sound_speed: -1.0, ..FLUID }).contains("sound_speed is -1"));
+    assert!(
+        of_fluid(Fluid { kinematic_viscosity: f64::NAN, ..FLUID }).contains("kinematic_viscosity")
+    );
+    let of_scheme = |scheme: Scheme| complaint(&start(), &FLUID, &physics, &scheme);
+    assert!(of_scheme(Scheme { skin: 0.0, ..scheme }).contains("skin is 0"));
+    assert!(of_scheme(Scheme { courant_number: 0.0, ..scheme }).contains("courant_number"));
+    let of_start = |start: Start| complaint(&start, &FLUID, &physics, &scheme);
+    assert!(of_start(Start { spacing: -0.1, ..start() }).contains("spacing is -0.1"));
+    assert!(of_start(Start { positions: Vec::new(), ..start() }).contains("0 particles"));
+    assert!(of_start(Start { velocities: vec![[0.0; 3]], ..start() }).contains("1 velocities"));
+}
+
+#[test]
+fn a_body_that_makes_no_sense() {
+    let body = Shape::Cylinder { axis: Axis::Z, centre: [0.5; 3], radius: -0.1 };
+    let physics = Physics { bodies: vec![body], ..Physics::default() };
+    let said = complaint(&start(), &FLUID, &physics, &Scheme::default());
+    assert!(said.contains("body 0"), "{said}");
+}
+
+#[test]
+fn a_box_inside_out() {
+    let region = Region { lower: vec![1.0, 0.0], upper: vec![0.0, 1.0], periodic: vec![true; 2] };
+    let start = Start { region, ..start() };
+    let said = complaint(&start, &FLUID, &Physics::default(), &Scheme::default());
+    assert!(said.contains("box from 1 to 0 in direction 0"), "{said}");
+}
+
+#[test]
+fn a_particle_that_is_nowhere_and_one_that_moves_at_no_speed() {
+    let mut start = start();
+    start.positions[7][1] = f64::NAN;
+    let (physics, scheme) = (Physics::default(), Scheme::default());
+    let begin = |start: &Start| {
+        let sph = Sph::<f64>::new(start, &FLUID, &physics, &scheme).unwrap();
+        let mut simulation = Simulation::new(sph.model, Settings::default()).unwrap();
+        simulation.begin().unwrap_err().to_string()
+    };
+    let said = begin(&start);
+    assert!(said.contains("particle 7") && said.contains("direction 1"), "{said}");
+    start.positions[7][1] = 0.05;
+    start.velocities = vec![[0.0; 3]; start.positions.len()];
+    start.velocities[3][0] = f64::INFINITY;
+    let said = begin(&start);
+    assert!(said.contains("largest speed inf"), "{said}");
+}

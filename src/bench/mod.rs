@@ -1,0 +1,5 @@
+//! Benchmarks that the command line runs.
+
+pub mod cylinder;
+pub mod figures;
+pub mod memory;

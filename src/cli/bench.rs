@@ -1,0 +1,176 @@
+//! `finegrain bench`.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use finegrain::bench::cylinder::{self, Plan, Row};
+use finegrain::bench::figures;
+use finegrain::framework::Schedule;
+use finegrain::scene::Precision;
+use finegrain::sph::Viscosity;
+
+use super::CommandError;
+
+/// Benchmarks.
+#[derive(Subcommand)]
+pub enum BenchCommand {
+    /// The paper's cylinder: time per step, speed-up and efficiency (Figs. 10 to 12).
+    Cylinder(CylinderArguments),
+}
+
+impl Default for BenchCommand {
+    fn default() -> Self {
+        Self::Cylinder(CylinderArguments {
+            sizes: vec![0.001],
+            workers: Vec::new(),
+            steps: 20,
+            repeats: 3,
+            schedule: Schedule::default(),
+            precision: Precision::default(),
+            viscous_form: ViscousForm::default(),
+            out: PathBuf::from("out/bench-cylinder"),
+        })
+    }
+}
+
+/// Form of the viscous term.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum ViscousForm {
+    /// Strain-rate form of the paper, eq. I.2: two sweeps a step.
+    #[default]
+    StrainRate,
+    /// Morris et al. (1997): one sweep a step.
+    Morris,
+}
+
+/// Arguments of `finegrain bench cylinder`.
+#[derive(Args)]
+pub struct CylinderArguments {
+    /// Widths of the box in metres, separated by commas; the paper's are 0.001 to 0.007, 100,000
+    /// particles each 0.001.
+    #[arg(long, value_delimiter = ',', default_value = "0.001", value_parser = width)]
+    sizes: Vec<f64>,
+    /// Numbers of workers, separated by commas; 1 to all cores by default.
+    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
+    workers: Vec<u16>,
+    /// Steps of a sample.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..))]
+    steps: u64,
+    /// Samples of each number of workers.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// How workers meet: serial, lockstep, peer-to-peer, fork-join or fixed.
+    #[arg(long, default_value_t)]
+    schedule: Schedule,
+    /// Scalar type.
+    #[arg(long, default_value = "f64")]
+    precision: Precision,
+    /// Form of the viscous term.
+    #[arg(long, default_value = "strain-rate")]
+    viscous_form: ViscousForm,
+    /// Folder for pictures, numbers and results dumps.
+    #[arg(long, default_value = "out/bench-cylinder")]
+    out: PathBuf,
+}
+
+fn width(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f64| (0.0003..=0.1).contains(x))
+        .ok_or_else(|| format!("{text:?} is not a width in metres between 0.0003 and 0.1"))
+}
+
+/// Runs a benchmark.
+pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
+    let out = &mut std::io::stdout();
+    let BenchCommand::Cylinder(arguments) = command;
+    let workers = if arguments.workers.is_empty() {
+        let cores = std::thread::available_parallelism()?.get();
+        (1..=cores).collect()
+    } else {
+        arguments.workers.iter().map(|&w| usize::from(w)).collect()
+    };
+    let plan = Plan {
+        widths: arguments.sizes,
+        workers,
+        steps: arguments.steps,
+        repeats: usize::from(arguments.repeats),
+        schedule: arguments.schedule,
+        precision: arguments.precision,
+        viscosity: match arguments.viscous_form {
+            ViscousForm::StrainRate => Viscosity::StrainRate,
+            ViscousForm::Morris => Viscosity::Morris,
+        },
+        out: arguments.out,
+    };
+    writeln!(
+        out,
+        "Flow past a cylinder (Holmes, Williams & Tilke 2011): {} steps, a results dump every 10, \
+         {} samples of each, {}, {}",
+        plan.steps,
+        plan.repeats,
+        plan.schedule,
+        finegrain::framework::lanes::instruction_set()
+    )?;
+    let rows = cylinder::measure(&plan, |row| {
+        let last = row.seconds_per_step.last().copied().unwrap_or_default();
+        // Only progress: who does not listen misses nothing.
+        let _ = writeln!(
+            std::io::stderr(),
+            "  {} particles, {} workers: {last:.4} s/step",
+            row.particles,
+            row.workers
+        );
+    })?;
+    table(out, &rows)?;
+    cylinder::write_csv(&plan.out.join("cylinder.csv"), &rows)?;
+    let pictures = figures::draw(&plan.out, &rows)?;
+    writeln!(out, "\nnumbers:  {}", plan.out.join("cylinder.csv").display())?;
+    for picture in pictures {
+        writeln!(out, "picture:  {}", picture.display())?;
+    }
+    writeln!(out, "ParaView: {}", plan.out.join("dumps").join("results.pvd").display())?;
+    Ok(())
+}
+
+fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "\n{:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>13} {:>9}",
+        "particles",
+        "workers",
+        "s/step (med)",
+        "s/step (min)",
+        "speed-up",
+        "efficiency",
+        "Minteractions",
+        "B/particle"
+    )?;
+    let optional = |x: Option<f64>, digits: usize| {
+        x.map_or_else(|| "-".to_owned(), |x| format!("{x:.digits$}"))
+    };
+    for row in rows {
+        writeln!(
+            out,
+            "{:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>13.1} {:>9}",
+            row.particles,
+            row.workers,
+            row.seconds(),
+            row.best(),
+            optional(row.speed_up(), 3),
+            optional(row.efficiency(), 3),
+            row.interactions_per_second() / 1e6,
+            optional(row.bytes_per_particle(), 0),
+        )?;
+    }
+    if let Some(row) = rows.first() {
+        writeln!(
+            out,
+            "Minteractions: million pair interactions a second and core in whole steps (median), {:.1}\n\
+             neighbours a particle visited in {} sweep(s) a step; every visit counts",
+            row.neighbours, row.sweeps
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,9 @@
+//! What the commands do.
+
+pub mod bench;
+pub mod run;
+pub mod scene_file;
+pub mod scenes;
+
+/// Whatever ends a command; its message is for the user.
+pub type CommandError = Box<dyn std::error::Error>;

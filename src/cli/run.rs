@@ -1,0 +1,243 @@
+//! `finegrain run`.
+
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use clap::Args;
+use finegrain::framework::Schedule;
+use finegrain::framework::port::Port;
+use finegrain::framework::run::Progress;
+use finegrain::scene::{Orders, Parameters, Precision, Report, Scene};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::CommandError;
+use super::scene_file::SceneFile;
+
+/// Arguments of `finegrain run`.
+#[derive(Args)]
+pub struct RunArguments {
+    /// Name of a built-in scene (see `finegrain scenes`), or a TOML file.
+    scene: String,
+    /// Set a parameter of the scene; may be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    settings: Vec<(String, String)>,
+    /// Numerical method.
+    #[arg(long)]
+    method: Option<String>,
+    /// Number of worker threads; all cores by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    workers: Option<u16>,
+    /// How workers meet: serial, lockstep, peer-to-peer, fork-join or fixed.
+    #[arg(long, default_value_t)]
+    schedule: Schedule,
+    /// Scalar type.
+    #[arg(long)]
+    precision: Option<Precision>,
+    /// End after so many steps.
+    #[arg(long)]
+    steps: Option<u64>,
+    /// End at this time, in seconds; the last steps are made shorter to hit it.
+    #[arg(long, value_parser = positive)]
+    until: Option<f64>,
+    /// Folder for dumps, histories, checkpoints and the picture of the final field.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Write a checkpoint every so many steps (needs --out).
+    #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
+    checkpoint_every: Option<u64>,
+    /// Go on from this checkpoint; scene, parameters and precision must be those of its run.
+    #[arg(long, value_name = "FILE")]
+    restart: Option<PathBuf>,
+    /// Print one JSON object as the last line of standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    text.split_once('=')
+        .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
+        .ok_or_else(|| format!("{text:?} is not of the form KEY=VALUE"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f64| *x > 0.0 && x.is_finite())
+        .ok_or_else(|| format!("{text:?} is not a finite number above zero"))
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Line<'a> {
+    scene: &'a str,
+    method: &'a str,
+    parameters: &'a Parameters,
+    precision: Precision,
+    schedule: &'a str,
+    workers: usize,
+    instruction_set: &'a str,
+    stopped: String,
+    steps: u64,
+    time: f64,
+    wall_s: f64,
+    points: usize,
+    point_steps_per_s: f64,
+    state_hash: String,
+    results: &'a std::collections::BTreeMap<&'static str, f64>,
+    errors: &'a std::collections::BTreeMap<&'static str, f64>,
+}
+
+/// Runs a scene and says what it came to.
+pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
+    let is_file = Path::new(&arguments.scene).extension().is_some_and(|e| e == "toml");
+    let file = if is_file {
+        SceneFile::read(Path::new(&arguments.scene))?
+    } else {
+        SceneFile { scene: arguments.scene.clone(), ..SceneFile::default() }
+    };
+    let in_file = |error: CommandError| -> CommandError {
+        if is_file { format!("scene file `{}`: {error}", arguments.scene).into() } else { error }
+    };
+    let scene = Scene::find(&file.scene).map_err(|e| in_file(e.into()))?;
+    // What the command line says goes over what the file says; each answers for its own mistakes.
+    let mut settings = file.settings();
+    let set = |settings: &[(String, String)]| -> Result<Parameters, CommandError> {
+        Ok(scene.set(settings.iter().map(|(k, v)| (k.as_str(), v.as_str())))?)
+    };
+    set(&settings).map_err(in_file)?;
+    settings.extend(arguments.settings);
+    let parameters = set(&settings)?;
+    let is_files_method = arguments.method.is_none();
+    let method = arguments.method.or(file.method);
+    let precision = arguments.precision.or(file.precision.map(Into::into)).unwrap_or_default();
+    let prepared = scene
+        .prepare(method.as_deref(), &parameters, precision)
+        .map_err(|e| if is_files_method { in_file(e.into()) } else { e.into() })?;
+
+    let (stop, stops) = Port::unbounded("stop");
+    // The first Ctrl-C ends the run in order, the second ends the process.
+    let asked = AtomicBool::new(false);
+    ctrlc::set_handler(move || {
+        if asked.swap(true, Ordering::Relaxed) || stop.post(()).is_err() {
+            std::process::exit(130);
+        }
+    })?;
+    let bar = std::io::stderr().is_terminal().then(ProgressLine::start);
+    let orders = Orders {
+        schedule: arguments.schedule,
+        workers: arguments.workers.map(usize::from),
+        steps: arguments.steps,
+        until: arguments.until,
+        out: arguments.out.clone(),
+        checkpoint_every: arguments.checkpoint_every,
+        restart: arguments.restart,
+        progress: bar.as_ref().map(|bar| bar.port.clone()),
+        stops: Some(stops),
+    };
+    let workers = orders.settings().workers;
+    let points = prepared.points();
+    eprintln!("{}: {points} points, {}, {workers} workers", scene.name, arguments.schedule);
+    let outcome = prepared.run(orders);
+    if let Some(bar) = bar {
+        bar.finish();
+    }
+    let report = outcome?;
+    let mut stdout = std::io::stdout().lock();
+    say(&mut stdout, &report)?;
+    if let (Some(out), Some(picture)) = (&arguments.out, &report.picture) {
+        let path = out.join("final.png");
+        picture.save(&path)?;
+        writeln!(stdout, "picture of the final field: {}", path.display())?;
+    }
+    if arguments.json {
+        let line = Line {
+            scene: scene.name,
+            method: method.as_deref().unwrap_or(scene.methods[0]),
+            parameters: &parameters,
+            precision,
+            schedule: arguments.schedule.name(),
+            workers,
+            instruction_set: finegrain::framework::lanes::instruction_set(),
+            stopped: report.stopped.to_string(),
+            steps: report.steps,
+            time: report.time,
+            wall_s: report.wall_s,
+            points,
+            point_steps_per_s: report.point_steps_per_s(),
+            state_hash: format!("{:016x}", report.state_hash),
+            results: &report.results,
+            errors: &report.errors,
+        };
+        writeln!(stdout, "{}", serde_json::to_string(&line)?)?;
+    }
+    Ok(())
+}
+
+fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "{} after {} steps, t = {:.6e} s, in {:.2} s ({:.3} million point-steps a second)",
+        report.stopped,
+        report.steps,
+        report.time,
+        report.wall_s,
+        report.point_steps_per_s() / 1e6
+    )?;
+    for (name, value) in &report.results {
+        match report.errors.get(name) {
+            Some(error) if error != value => {
+                let percent = 100.0 * error;
+                writeln!(out, "  {name} = {value:.6e} (relative error {percent:+.3} %)")?;
+            }
+            _ => writeln!(out, "  {name} = {value:.6e}")?,
+        }
+    }
+    writeln!(out, "  state hash {:016x}", report.state_hash)?;
+    for file in report.files.iter().filter(|f| f.extension().is_some_and(|e| e != "vtu")) {
+        writeln!(out, "  wrote {}", file.display())?;
+    }
+    Ok(())
+}
+
+/// Progress on standard error: how far, steps per second, time left.
+struct ProgressLine {
+    port: Port<Progress>,
+    thread: JoinHandle<()>,
+}
+
+impl ProgressLine {
+    fn start() -> Self {
+        let (port, mut inbox) = Port::bounded("progress", 4);
+        let thread = std::thread::spawn(move || {
+            let bar = ProgressBar::new(1000);
+            if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg}") {
+                bar.set_style(style);
+            }
+            while let Some(progress) = inbox.take() {
+                let Progress { step, time, steps_per_second, fraction, remaining } = progress;
+                if let Some(fraction) = fraction {
+                    bar.set_position((1000.0 * fraction) as u64);
+                }
+                let left = remaining.map_or_else(String::new, |left: Duration| {
+                    format!(", at most {} s left", left.as_secs())
+                });
+                bar.set_message(format!(
+                    "step {step}, t = {time:.4e} s, {steps_per_second:.1} steps/s{left}"
+                ));
+            }
+            bar.finish_and_clear();
+        });
+        Self { port, thread }
+    }
+
+    /// Ends it when the last event has been shown.
+    fn finish(self) {
+        drop(self.port);
+        // It only draws; if it panicked there is nothing to save.
+        let _ = self.thread.join();
+    }
+}

@@ -1,0 +1,67 @@
+//! What a run of a scene comes to.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use finegrain_framework::run::{Stopped, Summary};
+
+use crate::figure::Field;
+
+/// Result of a run.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Why it ended.
+    pub stopped: Stopped,
+    /// Number of points.
+    pub points: usize,
+    /// Number of steps since the beginning of time.
+    pub steps: u64,
+    /// Number of steps of this run.
+    pub steps_done: u64,
+    /// Time reached, s.
+    pub time: f64,
+    /// Wall-clock time, s.
+    pub wall_s: f64,
+    /// Hash of the state's bits.
+    pub state_hash: u64,
+    /// The scene's named scalar results.
+    pub results: BTreeMap<&'static str, f64>,
+    /// Relative errors where a reference exists for these parameters.
+    pub errors: BTreeMap<&'static str, f64>,
+    /// Files written.
+    pub files: Vec<PathBuf>,
+    /// The final field.
+    pub picture: Option<Field>,
+}
+
+impl Report {
+    /// A report without results yet.
+    pub fn new(summary: &Summary, points: usize) -> Self {
+        Self {
+            stopped: summary.stopped,
+            points,
+            steps: summary.step,
+            steps_done: summary.steps_done,
+            time: summary.time,
+            wall_s: summary.wall_clock.as_secs_f64(),
+            state_hash: summary.state_hash,
+            results: BTreeMap::new(),
+            errors: BTreeMap::new(),
+            files: summary.files.clone(),
+            picture: None,
+        }
+    }
+
+    /// Points times steps over wall-clock time.
+    pub fn point_steps_per_s(&self) -> f64 {
+        self.points as f64 * self.steps_done as f64 / self.wall_s
+    }
+
+    /// Adds a result, and its relative error if there is a reference.
+    pub fn result(&mut self, name: &'static str, value: f64, reference: Option<f64>) {
+        self.results.insert(name, value);
+        if let Some(reference) = reference {
+            self.errors.insert(name, value / reference - 1.0);
+        }
+    }
+}

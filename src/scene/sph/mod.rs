@@ -1,0 +1,191 @@
+//! How smoothed particle hydrodynamics takes part in the scenes.
+
+pub mod cylinder;
+pub mod taylor_green;
+
+use std::time::Duration;
+
+use finegrain_framework::run::{Dump, Every, Run, Summary, Until};
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Integrator, Real, Simulation, State};
+use finegrain_sph::{Fields, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity};
+
+use super::parameter::{Parameter, Parameters};
+use super::{Orders, Prepared, Report, SceneError};
+use crate::figure::{Axis, Field};
+
+/// Parameters of the discretisation that all SPH scenes share.
+const PARAMETERS: [Parameter; 7] = [
+    Parameter::choice(
+        "kernel",
+        &["gaussian", "cubic-spline", "quartic-spline", "quintic-spline", "wendland-c2"],
+        "smoothing kernel",
+    ),
+    Parameter::number("smoothing_ratio", 1.0, [0.8, 3.0], "", "smoothing length over spacing"),
+    Parameter::choice(
+        "viscous_form",
+        &["morris", "strain-rate"],
+        "Morris et al. (1997) or eq. I.2 of Holmes et al. (2011)",
+    ),
+    Parameter::number(
+        "background_pressure",
+        0.0,
+        [0.0, 1.0],
+        "",
+        "added to the equation of state, in units of density times sound speed squared",
+    ),
+    Parameter::choice(
+        "integrator",
+        &["leapfrog", "symplectic-euler", "rk2", "ssp-rk3", "rk4", "euler"],
+        "how time is stepped",
+    ),
+    Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
+    Parameter::number("mach", 0.1, [1e-4, 0.5], "", "largest speed over sound speed, about"),
+];
+
+/// What the parameters say about the discretisation.
+fn scheme(parameters: &Parameters) -> Scheme {
+    Scheme {
+        kernel: match parameters.choice("kernel") {
+            "cubic-spline" => SmoothingFunction::CubicSpline,
+            "quartic-spline" => SmoothingFunction::QuarticSpline,
+            "quintic-spline" => SmoothingFunction::QuinticSpline,
+            "wendland-c2" => SmoothingFunction::WendlandC2,
+            _ => SmoothingFunction::Gaussian,
+        },
+        smoothing_ratio: parameters.number("smoothing_ratio"),
+        integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
+        courant_number: parameters.number("courant"),
+        ..Scheme::default()
+    }
+}
+
+fn viscosity(parameters: &Parameters) -> Viscosity {
+    match parameters.choice("viscous_form") {
+        "strain-rate" => Viscosity::StrainRate,
+        _ => Viscosity::Morris,
+    }
+}
+
+fn state_equation(parameters: &Parameters) -> StateEquation {
+    StateEquation::Linear { background: parameters.number("background_pressure") }
+}
+
+/// What a scene adds to a run of SPH.
+trait Flow<T: Real> {
+    /// When it ends if nobody says otherwise, s.
+    fn end_time(&self) -> f64;
+
+    /// Adds monitors and stop criteria.
+    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>>;
+
+    /// Draws results from the histories and the final state.
+    fn judge(
+        &self,
+        report: &mut Report,
+        summary: &Summary,
+        simulation: &mut Simulation<Cells<T>>,
+        fields: &Fields<T>,
+        mass: f64,
+    );
+
+    /// Title of the picture of the final field, and the unit of speed.
+    fn title(&self) -> String;
+
+    /// Spacing of the particles, m.
+    fn spacing(&self) -> f64;
+}
+
+/// A scene with its SPH model.
+struct SphScene<T: Real, F> {
+    sph: Sph<T>,
+    flow: F,
+    scene_hash: u64,
+}
+
+impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
+    fn points(&self) -> usize {
+        self.sph.model.columns.points()
+    }
+
+    fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
+        let Self { sph, flow, scene_hash } = *self;
+        let Sph { model, fields, particle_mass } = sph;
+        let points = model.columns.points();
+        let settings = orders.settings();
+        let workers = settings.workers;
+        let simulation = Simulation::new(model, settings)
+            .map_err(|cause| SceneError::Workers { workers, cause })?;
+        let end_time = orders.until.or(orders.steps.is_none().then(|| flow.end_time()));
+        let until = Until { steps: orders.steps, time: end_time, wall_clock: None };
+        let mut run = Run::new(simulation).until(until).scene_hash(scene_hash);
+        run = flow.observe(run, &fields, particle_mass);
+        if let Some(out) = orders.out {
+            let dims = fields.velocity.len();
+            let velocity = &["velocity_x", "velocity_y", "velocity_z"][..dims];
+            let mut dump = Dump::new("fields", Every::Time(0.1 * flow.end_time()))
+                .scalar("identity")
+                .scalar("density")
+                .vector("velocity", velocity.iter().copied());
+            if fields.wall_depth.is_some() {
+                dump = dump.scalar("wall_depth");
+            }
+            run = run.out(out).dump(dump);
+            if let Some(steps) = orders.checkpoint_every {
+                run = run.checkpoint(Every::Steps(steps), 3);
+            }
+        }
+        if let Some(restart) = orders.restart {
+            run = run.restart_from(restart);
+        }
+        if let Some(progress) = orders.progress {
+            run = run.progress(progress, Duration::from_millis(200));
+        }
+        if let Some(stops) = orders.stops {
+            run = run.stop_on(stops);
+        }
+        let summary = run.run()?;
+        let mut report = Report::new(&summary, points);
+        let simulation = run.simulation_mut();
+        flow.judge(&mut report, &summary, simulation, &fields, particle_mass);
+        report.picture = Some(picture(simulation, &fields, flow.title(), flow.spacing()));
+        Ok(report)
+    }
+}
+
+/// Speed in the plane, or in 3-D in a slice through the middle.
+fn picture<T: Real>(
+    simulation: &Simulation<Cells<T>>,
+    fields: &Fields<T>,
+    title: String,
+    spacing: f64,
+) -> Field {
+    let columns = simulation.columns();
+    let region = simulation.domain().region();
+    let value = |handle: State<T>, i: usize| columns.values(handle)[i].as_f64();
+    let mut points = Vec::new();
+    for i in 0..columns.points() {
+        if let Some(&z) = fields.position.get(2) {
+            let middle = 0.5 * (region.lower[2] + region.upper[2]);
+            if (value(z, i) - middle).abs() > 0.5 * spacing {
+                continue;
+            }
+        }
+        if fields.wall_depth.is_some_and(|depth| value(depth, i) > 0.0) {
+            continue;
+        }
+        let at = [value(fields.position[0], i), value(fields.position[1], i)];
+        let squared: f64 = fields.velocity.iter().map(|&v| value(v, i).powi(2)).sum();
+        points.push((at, squared.sqrt()));
+    }
+    Field::of_points(points, spacing)
+        .title(title)
+        .quantity(Axis::new("speed").unit("m/s"))
+        .window([region.lower[0], region.lower[1]], [region.upper[0], region.upper[1]])
+}
+
+/// Hash of everything that is modelled.
+fn scene_hash(scene: &str, parameters: &Parameters, precision: super::Precision) -> u64 {
+    let text = format!("{scene} sph {precision:?} {parameters:?}");
+    xxhash_rust::xxh3::xxh3_64(text.as_bytes())
+}

@@ -1,0 +1,141 @@
+//! Taylor-Green vortices in SPH.
+
+use finegrain_framework::run::{Every, Run, Summary};
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Real, Simulation, State};
+use finegrain_sph::{Fields, Fluid, Packing, Physics, Sph, Start, measure};
+
+use super::{Flow, SphScene};
+use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::taylor_green::{self, TaylorGreen};
+use crate::scene::{Precision, Prepared, Report, SceneError};
+
+/// All parameters.
+pub fn parameters() -> Vec<Parameter> {
+    let own = [Parameter::number(
+        "disturbance",
+        0.2,
+        [0.0, 0.5],
+        "",
+        "largest random displacement from the lattice at the start, in spacings",
+    )];
+    [&taylor_green::PARAMETERS[..], &super::PARAMETERS, &own].concat()
+}
+
+/// Prepares the scene.
+pub fn prepare(
+    parameters: &Parameters,
+    precision: Precision,
+) -> Result<Box<dyn Prepared>, SceneError> {
+    Ok(match precision {
+        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
+        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
+    })
+}
+
+fn build<T: Real>(
+    parameters: &Parameters,
+    precision: Precision,
+) -> Result<SphScene<T, Vortices>, SceneError> {
+    let scene = TaylorGreen::new(parameters);
+    let spacing = 1.0 / scene.resolution;
+    let packing = if scene.dims == 2 { Packing::Square } else { Packing::Cubic };
+    let lattice = packing.fit([1.0; 3], spacing)?;
+    let positions: Vec<_> =
+        lattice.displaced_positions(parameters.number("disturbance"), 1).collect();
+    let start = Start {
+        velocities: positions.iter().map(|&x| scene.velocity(x, 0.0)).collect(),
+        positions,
+        ..super::cylinder::start(scene.dims, &lattice, spacing)
+    };
+    let fluid = Fluid {
+        density: 1.0,
+        sound_speed: 1.0 / parameters.number("mach"),
+        kinematic_viscosity: 1.0 / scene.reynolds,
+        state_equation: super::state_equation(parameters),
+    };
+    let physics = Physics { viscosity: Some(super::viscosity(parameters)), ..Physics::default() };
+    let mut sph = Sph::<T>::new(&start, &fluid, &physics, &super::scheme(parameters))?;
+    // Density that goes with the pressure of the vortices, so that they start without sound.
+    if scene.dims == 2 {
+        let density = sph.model.columns.values_mut(sph.fields.density);
+        for (density, &x) in density.iter_mut().zip(&start.positions) {
+            *density = T::of(1.0 + scene.pressure(x) / fluid.sound_speed.powi(2));
+        }
+    }
+    let scene_hash = super::scene_hash("taylor-green", parameters, precision);
+    Ok(SphScene { sph, flow: Vortices { scene }, scene_hash })
+}
+
+struct Vortices {
+    scene: TaylorGreen,
+}
+
+impl<T: Real> Flow<T> for Vortices {
+    fn end_time(&self) -> f64 {
+        1.0
+    }
+
+    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+        let fields = fields.clone();
+        let columns = ["kinetic_energy", "largest_speed", "momentum_x", "momentum_y"];
+        run.monitor("flow", Every::Time(0.02), columns, move |whole| {
+            let totals = measure::totals(whole, &fields, mass);
+            let [x, y, _] = totals.momentum;
+            [totals.kinetic_energy, measure::largest_speed(whole, &fields), x, y]
+        })
+    }
+
+    /// `decay_rate` of the velocity, from the kinetic energy at the beginning and the end;
+    /// `velocity_l1` and `velocity_l2`, relative to the norms of the exact velocity.
+    fn judge(
+        &self,
+        report: &mut Report,
+        summary: &Summary,
+        simulation: &mut Simulation<Cells<T>>,
+        fields: &Fields<T>,
+        mass: f64,
+    ) {
+        let time = summary.time;
+        let history = summary.histories[0].column("kinetic_energy");
+        let (Some(first), true) = (history.and_then(|mut energy| energy.next()), time > 0.0) else {
+            return;
+        };
+        let last = measure::totals(&mut simulation.whole(), fields, mass).kinetic_energy;
+        let is_plane = self.scene.dims == 2;
+        let rate = (first / last).ln() / (2.0 * time);
+        report.result("decay_rate", rate, is_plane.then(|| self.scene.decay_rate()));
+        if !is_plane {
+            return;
+        }
+        let scene = self.scene;
+        let columns = simulation.columns();
+        let (mut l1, mut l2) = ([0.0; 2], [0.0; 2]);
+        for i in 0..columns.points() {
+            let value = |handle: State<T>| columns.values(handle)[i].as_f64();
+            let x = [value(fields.position[0]), value(fields.position[1]), 0.0];
+            let exact = scene.velocity(x, time);
+            let (dx, dy) =
+                (value(fields.velocity[0]) - exact[0], value(fields.velocity[1]) - exact[1]);
+            l1[0] += dx.hypot(dy);
+            l1[1] += exact[0].hypot(exact[1]);
+            l2[0] += dx * dx + dy * dy;
+            l2[1] += exact[0] * exact[0] + exact[1] * exact[1];
+        }
+        // These are errors already: relative to the exact solution.
+        for (name, error) in
+            [("velocity_l1", l1[0] / l1[1]), ("velocity_l2", (l2[0] / l2[1]).sqrt())]
+        {
+            report.results.insert(name, error);
+            report.errors.insert(name, error);
+        }
+    }
+
+    fn title(&self) -> String {
+        format!("Taylor-Green vortices, Re = {}", self.scene.reynolds)
+    }
+
+    fn spacing(&self) -> f64 {
+        1.0 / self.scene.resolution
+    }
+}

@@ -1,0 +1,208 @@
+//! The command line: what it prints, what it writes, and what it says to bad input.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn finegrain(arguments: &[&str], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_finegrain"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the command starts")
+}
+
+/// The JSON object on the last line of standard output.
+fn json(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8_lossy(&output.stdout);
+    serde_json::from_str(text.lines().last().expect("a last line")).expect("JSON")
+}
+
+/// What a command that must fail says.
+fn complaint(arguments: &[&str], folder: &Path) -> String {
+    let output = finegrain(arguments, folder);
+    assert!(!output.status.success(), "{arguments:?} must fail");
+    assert!(output.status.code().is_some(), "{arguments:?} must not be killed");
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+const SMALL: [&str; 4] = ["run", "taylor-green", "--set", "resolution=16"];
+
+fn small<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&SMALL[..], more].concat()
+}
+
+#[test]
+fn scenes_are_listed_with_their_parameters() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = finegrain(&["scenes"], folder.path());
+    let text = String::from_utf8_lossy(&output.stdout);
+    for word in ["cylinder", "taylor-green", "solid_fraction", "between 0.001 and 0.5"] {
+        assert!(text.contains(word), "{word} in {text}");
+    }
+}
+
+#[test]
+fn the_last_line_is_json_with_everything_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = json(&finegrain(&small(&["--steps", "5", "--json"]), folder.path()));
+    assert_eq!(line["scene"], "taylor-green");
+    assert_eq!(line["method"], "sph");
+    assert_eq!(line["steps"], 5);
+    assert_eq!(line["points"], 256);
+    assert_eq!(line["parameters"]["resolution"], 16);
+    assert_eq!(line["state_hash"].as_str().map(str::len), Some(16));
+    for key in ["time", "wall_s", "point_steps_per_s"] {
+        assert!(line[key].as_f64().is_some_and(|x| x > 0.0), "{key}");
+    }
+    assert!(line["results"]["decay_rate"].is_f64() && line["errors"]["decay_rate"].is_f64());
+}
+
+#[test]
+fn workers_and_schedules_do_not_change_the_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let hash = |more: &[&str]| {
+        let orders = [&["--steps", "12", "--json"], more].concat();
+        json(&finegrain(&small(&orders), folder.path()))["state_hash"].clone()
+    };
+    let expected = hash(&["--schedule", "serial"]);
+    for schedule in ["lockstep", "peer-to-peer", "fork-join", "fixed"] {
+        assert_eq!(hash(&["--schedule", schedule, "--workers", "3"]), expected, "{schedule}");
+    }
+    assert_ne!(hash(&["--precision", "f32"]), expected);
+}
+
+/// Restarts a run of 37 steps from each of its checkpoints.
+fn restarts_with_the_same_bits(scene: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |more: &[&str]| {
+        let orders = [&["--steps", "37", "--json"], more].concat();
+        json(&finegrain(&small(&[scene, &orders].concat()), folder.path()))
+    };
+    // More checkpoints than are kept: runs that end earlier leave the others.
+    for (out, end) in [("early", "19"), ("late", "37")] {
+        let orders = ["--steps", end, "--out", out, "--checkpoint-every", "6"];
+        finegrain(&small(&[scene, &orders].concat()), folder.path());
+    }
+    let whole = run(&[]);
+    let mut restarts = 0;
+    for out in ["early", "late"] {
+        for entry in std::fs::read_dir(folder.path().join(out)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|e| e == "ckpt") {
+                let path = path.to_str().unwrap();
+                let other = ["--workers", "3", "--schedule", "peer-to-peer"];
+                let again = run(&[&["--restart", path], &other[..]].concat());
+                assert_eq!(again["state_hash"], whole["state_hash"], "{scene:?} from {path}");
+                restarts += 1;
+            }
+        }
+    }
+    assert_eq!(restarts, 6);
+}
+
+#[test]
+fn a_restarted_run_ends_with_the_bits_of_the_uninterrupted_one() {
+    for integrator in ["leapfrog", "symplectic-euler", "rk2", "ssp-rk3", "rk4", "euler"] {
+        let integrator = format!("integrator={integrator}");
+        let moving = ["--set", "background_pressure=0.1", "--set", "courant=0.5"];
+        restarts_with_the_same_bits(&[&["--set", &integrator], &moving[..]].concat());
+    }
+}
+
+#[test]
+fn a_scene_file_sets_parameters_and_the_command_line_goes_over_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = "scene = \"taylor-green\"\nprecision = \"f32\"\n[parameters]\nresolution = 12\n\
+                kernel = \"quintic-spline\"\n";
+    std::fs::write(folder.path().join("my.toml"), file).unwrap();
+    let line = json(&finegrain(
+        &["run", "my.toml", "--set", "reynolds=50", "--steps", "2", "--json"],
+        folder.path(),
+    ));
+    assert_eq!(line["points"], 144);
+    assert_eq!(line["precision"], "f32");
+    assert_eq!(line["parameters"]["kernel"], "quintic-spline");
+    assert_eq!(line["parameters"]["reynolds"], 50.0);
+}
+
+#[test]
+fn bad_arguments_are_named_with_what_would_be_right() {
+    let folder = tempfile::tempdir().unwrap();
+    let says = |arguments: &[&str], words: &[&str]| {
+        let text = complaint(arguments, folder.path());
+        for word in words {
+            assert!(text.contains(word), "{word:?} in {text}");
+        }
+    };
+    says(&["run", "cylindre"], &["cylindre", "cylinder, taylor-green"]);
+    says(&small(&["--set", "resolution=4"]), &["resolution = 4", "between 8 and 4000"]);
+    says(&small(&["--set", "resolution=NaN"]), &["resolution = NaN"]);
+    says(&small(&["--set", "resolution=24.6"]), &["resolution = 24.6", "whole number"]);
+    says(&small(&["--set", "dim=2.5"]), &["dim = 2.5", "between 2 and 3"]);
+    says(&small(&["--set", "viscocity=1"]), &["viscocity", "reynolds"]);
+    says(&small(&["--set", "kernel=box"]), &["kernel = box", "gaussian"]);
+    says(&small(&["--set", "resolution"]), &["KEY=VALUE"]);
+    says(&small(&["--method", "lbm"]), &["lbm", "sph"]);
+    says(&small(&["--schedule", "chaos"]), &["chaos", "peer-to-peer"]);
+    says(&small(&["--workers", "0"]), &["workers", "0"]);
+    says(&small(&["--until", "-1"]), &["-1"]);
+    says(&small(&["--checkpoint-every", "5"]), &["--out"]);
+    says(&small(&["--restart", "nowhere.ckpt"]), &["nowhere.ckpt"]);
+    says(&["run", "nowhere.toml"], &["nowhere.toml"]);
+    says(&["run", "cylinder", "--set", "solid_fraction=0.6"], &["solid_fraction", "0.5"]);
+}
+
+#[test]
+fn bad_scene_files_are_named_with_line_and_key() {
+    let folder = tempfile::tempdir().unwrap();
+    let says = |text: &str, words: &[&str]| {
+        std::fs::write(folder.path().join("bad.toml"), text).unwrap();
+        let said = complaint(&["run", "bad.toml"], folder.path());
+        for word in ["bad.toml"].iter().chain(words) {
+            assert!(said.contains(word), "{word:?} in {said}");
+        }
+    };
+    says("scene = \"cylinder\"\nresolution = 5\n", &["resolution"]);
+    says(
+        "scene = \"cylinder\"\n[parameters]\nresolution = 5\n",
+        &["resolution = 5", "between 10 and"],
+    );
+    says("scene = \"cylinder\"\n[parameters]\nresolution = [5]\n", &["resolution"]);
+    says("scene = \"nothing\"\n", &["nothing", "cylinder"]);
+    says("scene = ", &["line 1"]);
+    says("", &["scene"]);
+}
+
+#[test]
+fn a_time_step_past_stability_is_an_error_that_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let viscous = ["--set", "reynolds=0.1", "--set", "courant=10", "--steps", "200"];
+    let said = complaint(&small(&viscous), folder.path());
+    for word in ["sph: step", "time step control", "sound speed", "past stability"] {
+        assert!(said.contains(word), "{word:?} in {said}");
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_scene_or_a_damaged_one_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    finegrain(&small(&["--steps", "4", "--out", "a", "--checkpoint-every", "4"]), folder.path());
+    let checkpoint = std::fs::read_dir(folder.path().join("a"))
+        .unwrap()
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .find(|path| path.extension().is_some_and(|e| e == "ckpt"))
+        .unwrap();
+    let path = checkpoint.to_str().unwrap();
+    let other = ["run", "taylor-green", "--set", "resolution=18", "--restart", path];
+    assert!(complaint(&other, folder.path()).contains("scene"));
+    let mut bytes = std::fs::read(&checkpoint).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&checkpoint, bytes).unwrap();
+    assert!(complaint(&small(&["--restart", path]), folder.path()).contains(path));
+}
