@@ -279,6 +279,11 @@ impl Partition {
         &self.neighbours[self.neighbour_start[id] as usize..self.neighbour_start[id + 1] as usize]
     }
 
+    /// Neighbours of a sub-domain on average; 0 if there are no sub-domains.
+    pub fn mean_neighbours(&self) -> f64 {
+        self.neighbours.len() as f64 / self.len().max(1) as f64
+    }
+
     /// Sub-domain `id`.
     pub fn piece(&self, id: usize) -> Piece<'_> {
         Piece { id, spans: self.spans(id), neighbours: self.neighbours(id) }

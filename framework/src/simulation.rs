@@ -1,6 +1,7 @@
 //! A simulation: a method's model, run step by step under a schedule.
 
 mod ahead;
+mod cache;
 mod error;
 mod model;
 mod position;
@@ -208,7 +209,8 @@ impl<D: Domain> Simulation<D> {
             return u64::MAX;
         }
         let chosen = self.settings.steps_ahead;
-        let steps = chosen.unwrap_or_else(|| ahead::steps_ahead(&self.model));
+        let steps =
+            chosen.unwrap_or_else(|| ahead::steps_ahead(&self.model, self.settings.workers));
         // A leg's parts are counted in 32 bits.
         steps.clamp(1, 1 << 16)
     }
