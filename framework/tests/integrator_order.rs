@@ -110,3 +110,75 @@ fn force_that_depends_on_time() {
         assert!((order - f64::from(integrator.order())).abs() < 0.15, "{integrator:?}: {order}");
     }
 }
+
+/// `x' = v - 2 c x`, `v' = -x`: the damped oscillator, with the damping as a drift of `x`.
+struct Drifting {
+    position: State<f64>,
+    acceleration: Rate<f64>,
+    drift: Rate<f64>,
+    damping: f64,
+}
+
+impl RateStage<Independent> for Drifting {
+    type Scratch = ();
+
+    fn writes(&self) -> Vec<ColumnId> {
+        vec![self.acceleration.id(), self.drift.id()]
+    }
+
+    fn rate(
+        &self,
+        near: &Near<'_, Independent>,
+        rates: &mut Rates<'_, Independent>,
+        _: &mut (),
+        _: &Moment,
+    ) -> Result<(), Fault> {
+        let x = near.state(self.position).own().whole()[0];
+        rates.column(self.acceleration).whole()[0] = -x;
+        rates.column(self.drift).whole()[0] = -2.0 * self.damping * x;
+        Ok(())
+    }
+}
+
+fn error_with_drift(integrator: Integrator, steps: u64) -> f64 {
+    let damping = 0.2;
+    let mut columns = Columns::new(1);
+    let position = columns.state("position");
+    let velocity = columns.state("velocity");
+    let acceleration = columns.rate("acceleration");
+    let drift = columns.rate("drift");
+    columns.values_mut(position)[0] = 1.0;
+    // At rest: x' = 0.
+    columns.values_mut(velocity)[0] = 2.0 * damping;
+    let drifting = Stage::rate(Drifting { position, acceleration, drift, damping });
+    let evolution = Evolution::new()
+        .with_motion(position, velocity)
+        .with_drift(position, drift)
+        .with(velocity, acceleration);
+    let plan = integrator.plan(&mut columns, &evolution, &[drifting]);
+    let end = 2.0;
+    let model = Model {
+        method: "drifting".to_owned(),
+        domain: Independent::new(1),
+        columns,
+        plan,
+        whole: Vec::new(),
+        pacing: Box::new(FixedPace(end / steps as f64)),
+    };
+    let mut simulation = Simulation::new(model, Settings::default()).unwrap();
+    simulation.advance(steps).unwrap();
+    let x = simulation.columns().values(position)[0];
+    let v = simulation.columns().values(velocity)[0];
+    let (exact_x, rate) = exact(damping, false, end);
+    (x - exact_x).hypot(v - (rate + 2.0 * damping * exact_x))
+}
+
+#[test]
+fn motion_with_a_drift() {
+    for integrator in Integrator::ALL {
+        // Leapfrog takes the drift to first order, as it says.
+        let expected = if integrator == Integrator::Leapfrog { 1 } else { integrator.order() };
+        let order = (error_with_drift(integrator, 64) / error_with_drift(integrator, 128)).log2();
+        assert!((order - f64::from(expected)).abs() < 0.15, "{integrator:?}: {order}");
+    }
+}

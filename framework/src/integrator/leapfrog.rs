@@ -32,6 +32,9 @@ pub(super) fn leapfrog<D: Domain>(
             (state, columns.declare_like(rate, "last", Role::Rate))
         })
         .collect();
+    for &(_, drift) in &evolution.drifts {
+        columns.keep(drift);
+    }
     // x += dt v + dt^2/2 a for motions whose velocity has a rate.
     let accelerations: Vec<(ColumnId, ColumnId)> = evolution
         .motions
@@ -44,6 +47,7 @@ pub(super) fn leapfrog<D: Domain>(
     let drift_and_predict = Linear::new()
         .add_dt(&evolution.motions, 1.0)
         .add_dt_squared(&accelerations, 0.5)
+        .add_dt(&evolution.drifts, 1.0)
         .add_dt(&evolution.rates, 1.0);
     let correct = Linear::new().add_dt(&evolution.rates, 0.5).add_dt(&last, -0.5);
     let mut step = Step::builder().stage_at(0.0, &Stage::update(drift_and_predict));

@@ -45,22 +45,27 @@ impl Linear {
         self.push(pairs, 1.0, weight, 2)
     }
 
-    /// For each pair: `target = keep target + weight dt source`.
-    pub fn blend_dt(self, pairs: &[(ColumnId, ColumnId)], keep: f64, weight: f64) -> Self {
-        self.push(pairs, keep, weight, 1)
+    /// For each target: `target = keep target + weight dt k`, with the sum of its slopes as `k`.
+    pub fn blend_dt(self, slopes: &[(ColumnId, ColumnId)], keep: f64, weight: f64) -> Self {
+        firsts(slopes).fold(self, |linear, (is_first, slope)| {
+            linear.push(&[slope], if is_first { keep } else { 1.0 }, weight, 1)
+        })
     }
 
-    /// For each slope (y, k), with `y_n` in the register of the same place:
-    /// `y = y_n + weight dt k`. One after the other, so that a velocity moves its point before it
-    /// is itself overwritten.
+    /// For each target, with `y_n` in its register: `target = y_n + weight dt k`, with the sum of
+    /// its slopes as `k`. One after the other, so that a velocity moves its point before it is
+    /// itself overwritten.
     pub fn restart(
         self,
         registers: &[(ColumnId, ColumnId)],
         slopes: &[(ColumnId, ColumnId)],
         weight: f64,
     ) -> Self {
-        registers.iter().zip(slopes).fold(self, |linear, (&(register, state), &slope)| {
-            linear.copy(&[(state, register)]).add_dt(&[slope], weight)
+        firsts(slopes).fold(self, |linear, (is_first, slope)| {
+            let register = registers.iter().filter(|&&(_, target)| is_first && target == slope.0);
+            register
+                .fold(linear, |linear, &(register, target)| linear.copy(&[(target, register)]))
+                .add_dt(&[slope], weight)
         })
     }
 
@@ -117,19 +122,25 @@ fn apply<T: Real + Element, S: Real + Element, D: Domain>(
     }
 }
 
-/// For each (target, source) of `pairs`, a new register of the target's type; the pairs
-/// (register, target).
+/// Each slope, and whether it is the first of its target.
+fn firsts(
+    slopes: &[(ColumnId, ColumnId)],
+) -> impl Iterator<Item = (bool, (ColumnId, ColumnId))> + '_ {
+    slopes.iter().enumerate().map(|(i, &slope)| {
+        let is_first = slopes[..i].iter().all(|&(target, _)| target != slope.0);
+        (is_first, slope)
+    })
+}
+
+/// For each target of `slopes` a new register of its type; the pairs (register, target).
 pub(super) fn registers(
     columns: &mut Columns,
     name: &str,
-    pairs: &[(ColumnId, ColumnId)],
+    slopes: &[(ColumnId, ColumnId)],
 ) -> Vec<(ColumnId, ColumnId)> {
-    pairs
-        .iter()
-        .map(|&(target, _)| {
-            let register = columns.declare_like(target, name, Role::Register);
-            (register, target)
-        })
+    firsts(slopes)
+        .filter(|&(is_first, _)| is_first)
+        .map(|(_, (target, _))| (columns.declare_like(target, name, Role::Register), target))
         .collect()
 }
 
@@ -138,10 +149,14 @@ pub(super) fn reversed(pairs: &[(ColumnId, ColumnId)]) -> Vec<(ColumnId, ColumnI
     pairs.iter().map(|&(a, b)| (b, a)).collect()
 }
 
-/// Pairs (target of the first, source of the second), in order.
+/// The slopes, with the registers of their targets in place of these.
 pub(super) fn matched(
-    targets: &[(ColumnId, ColumnId)],
-    sources: &[(ColumnId, ColumnId)],
+    registers: &[(ColumnId, ColumnId)],
+    slopes: &[(ColumnId, ColumnId)],
 ) -> Vec<(ColumnId, ColumnId)> {
-    targets.iter().zip(sources).map(|(&(target, _), &(_, source))| (target, source)).collect()
+    let of = |slope: (ColumnId, ColumnId)| {
+        let found = registers.iter().filter(move |&&(_, target)| target == slope.0);
+        found.map(move |&(register, _)| (register, slope.1))
+    };
+    slopes.iter().flat_map(|&slope| of(slope)).collect()
 }

@@ -20,6 +20,8 @@ pub struct Evolution {
     pub(crate) rates: Vec<(ColumnId, ColumnId)>,
     /// State columns whose rate is another state column: `x' = v`.
     pub(crate) motions: Vec<(ColumnId, ColumnId)>,
+    /// State columns with rates that only add to what else moves them.
+    pub(crate) drifts: Vec<(ColumnId, ColumnId)>,
 }
 
 impl Evolution {
@@ -46,6 +48,23 @@ impl Evolution {
         use crate::columns::Handle;
         self.motions.push((position.id(), velocity.id()));
         self
+    }
+
+    /// `position' = velocity + drift`, besides [`Evolution::with_motion`]: a small correction of
+    /// the motion, written by the evaluation. Leapfrog takes it at the beginning of the step, to
+    /// first order, so that points do not move after the evaluation; the others treat it as any
+    /// rate.
+    #[must_use]
+    pub fn with_drift<T: Element>(mut self, position: State<T>, drift: Rate<T>) -> Self {
+        use crate::columns::Handle;
+        self.drifts.push((position.id(), drift.id()));
+        self
+    }
+
+    /// All pairs of a state and what adds to its rate. Motions first: the velocity that moves a
+    /// point is the one its rates were computed with.
+    fn slopes(&self) -> Vec<(ColumnId, ColumnId)> {
+        [&self.motions[..], &self.drifts, &self.rates].concat()
     }
 }
 

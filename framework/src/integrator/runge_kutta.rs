@@ -13,8 +13,7 @@ pub(super) fn rk2<D: Domain>(
     evolution: &Evolution,
     evaluation: &[Stage<D>],
 ) -> Plan<D> {
-    // Motions first: the velocity that moves a point is the one its rates were computed with.
-    let slopes = [&evolution.motions[..], &evolution.rates].concat();
+    let slopes = evolution.slopes();
     let start = registers(columns, "start", &slopes);
     let half = Linear::new().copy(&start).add_dt(&slopes, 0.5);
     let full = Linear::new().restart(&start, &slopes, 1.0);
@@ -36,7 +35,7 @@ pub(super) fn ssp_rk3<D: Domain>(
     evolution: &Evolution,
     evaluation: &[Stage<D>],
 ) -> Plan<D> {
-    let slopes = [&evolution.motions[..], &evolution.rates].concat();
+    let slopes = evolution.slopes();
     let start = registers(columns, "start", &slopes);
     let restart = reversed(&start);
     let first = Linear::new().copy(&start).add_dt(&slopes, 1.0);
@@ -61,7 +60,7 @@ pub(super) fn rk4<D: Domain>(
     evolution: &Evolution,
     evaluation: &[Stage<D>],
 ) -> Plan<D> {
-    let slopes = [&evolution.motions[..], &evolution.rates].concat();
+    let slopes = evolution.slopes();
     let start = registers(columns, "start", &slopes);
     let sum = registers(columns, "sum", &slopes);
     let result = reversed(&sum);

@@ -2,15 +2,10 @@
 
 use finegrain_framework::{Columns, Rate, Real, State};
 
-use crate::term::Term;
+use crate::quantity::Quantity;
 
 /// Names of the coordinate directions, for column names.
 const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
-
-/// Number of independent components of a symmetric tensor in `dims` dimensions.
-pub(crate) const fn symmetric(dims: usize) -> usize {
-    dims * (dims + 1) / 2
-}
 
 /// Handles of the columns of one model.
 #[derive(Clone, Debug)]
@@ -43,23 +38,29 @@ pub struct Fields<T> {
     pub stress_term: Vec<Rate<T>>,
 }
 
+/// Where a quantity is stored.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Column<T> {
+    State(State<T>),
+    Rate(Rate<T>),
+}
+
 impl<T: Real> Fields<T> {
-    /// Declares what `terms` need in `dims` dimensions.
+    /// Declares the columns of a model in `dims` dimensions whose terms use the quantities `uses`.
     pub(crate) fn declare(
         columns: &mut Columns,
         dims: usize,
         has_bodies: bool,
-        terms: &[Term<T>],
+        uses: &[Quantity],
     ) -> Self {
-        let has_energy = terms.iter().any(|t| matches!(t, Term::Energy(_)));
-        let has_stress = terms.iter().any(|t| matches!(t, Term::StrainRate(_)));
+        let used = |quantity: Quantity| uses.contains(&quantity);
         let directions = &DIRECTIONS[..dims];
         let name = |what: &str, direction: &str| format!("{what}_{direction}");
         Self {
             position: directions.iter().map(|d| columns.state(&name("position", d))).collect(),
             velocity: directions.iter().map(|d| columns.state(&name("velocity", d))).collect(),
             density: columns.state("density"),
-            energy: has_energy.then(|| columns.state("energy")),
+            energy: used(Quantity::EnergyRate).then(|| columns.state("energy")),
             wall_depth: has_bodies.then(|| columns.state("wall_depth")),
             identity: columns.state("identity"),
             volume: columns.register("volume"),
@@ -69,12 +70,34 @@ impl<T: Real> Fields<T> {
                 .map(|d| columns.rate(&name("acceleration", d)))
                 .collect(),
             density_rate: columns.rate("density_rate"),
-            energy_rate: has_energy.then(|| columns.rate("energy_rate")),
-            stress_term: if has_stress {
-                (0..symmetric(dims)).map(|k| columns.rate(&format!("stress_term_{k}"))).collect()
-            } else {
-                Vec::new()
-            },
+            energy_rate: used(Quantity::EnergyRate).then(|| columns.rate("energy_rate")),
+            stress_term: Quantity::symmetric(Quantity::StressTerm, dims)
+                .filter(|&stress| used(stress))
+                .enumerate()
+                .map(|(k, _)| columns.rate(&format!("stress_term_{k}")))
+                .collect(),
+        }
+    }
+
+    /// Where a quantity is stored, if this model has it.
+    pub(crate) fn column(&self, quantity: Quantity) -> Option<Column<T>> {
+        match quantity {
+            Quantity::Velocity(a) => Some(Column::State(self.velocity[a])),
+            Quantity::Volume => Some(Column::State(self.volume)),
+            Quantity::PressureTerm => Some(Column::State(self.pressure_term)),
+            Quantity::WallDepth => self.wall_depth.map(Column::State),
+            Quantity::StressTerm(k) => self.stress_term.get(k).copied().map(Column::Rate),
+            Quantity::Acceleration(a) => Some(Column::Rate(self.acceleration[a])),
+            Quantity::DensityRate => Some(Column::Rate(self.density_rate)),
+            Quantity::EnergyRate => self.energy_rate.map(Column::Rate),
+        }
+    }
+
+    /// The column of a quantity that a sweep writes.
+    pub(crate) fn rate(&self, quantity: Quantity) -> Option<Rate<T>> {
+        match self.column(quantity)? {
+            Column::Rate(rate) => Some(rate),
+            Column::State(_) => None,
         }
     }
 }

@@ -8,11 +8,13 @@
 //! | file | holds |
 //! |---|---|
 //! | `term/` | one sum over neighbours each, reading like its equation |
+//! | `evaluation.rs` | the order of the terms and updates, from what they read and write |
 //! | `sweep.rs` | a rate stage: gathers the neighbours of a particle once and runs the terms over them |
 //! | `neighbourhood.rs` | candidates of a cell, neighbours of a particle, in lanes |
 //! | [`kernel`] | smoothing functions |
 //! | [`packing`] | lattices that are exactly periodic |
-//! | [`model`] | what a scene chooses, checked and built into a framework model |
+//! | [`physics`], [`scheme`], [`start`] | what a scene models, how, and from which particles |
+//! | [`model`] | builds a framework model of it |
 //!
 //! # Example
 //! A disc of shear in a periodic box.
@@ -50,23 +52,32 @@
 #![warn(missing_docs)]
 
 pub mod dimension;
+pub mod error;
 pub mod fields;
 pub mod kernel;
 pub mod measure;
 pub mod model;
 pub mod packing;
+pub mod physics;
+pub mod scheme;
+pub mod start;
 pub mod state_equation;
-pub mod term;
 
+mod evaluation;
 mod neighbourhood;
 mod pacing;
+mod quantity;
 mod sweep;
+mod term;
 mod wall;
 
 pub use dimension::Dimension;
+pub use error::SphError;
 pub use fields::Fields;
 pub use kernel::{Kernel, SmoothingFunction};
-pub use model::{Fluid, Physics, Scheme, Sph, SphError, Start};
+pub use model::Sph;
 pub use packing::{Lattice, Packing};
+pub use physics::{Fluid, Physics, Viscosity};
+pub use scheme::Scheme;
+pub use start::Start;
 pub use state_equation::StateEquation;
-pub use term::Viscosity;

@@ -1,45 +1,23 @@
 //! What a particle sees of its neighbours: gathered once, into lanes that every term runs over.
 
+use std::ops::Index;
+
 use finegrain_framework::lanes::{Found, RECORD, Record};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::{Cell, CellBlock, Run};
-use finegrain_framework::{Near, Rate, Real, State, View};
+use finegrain_framework::{Near, Real, State, View};
 
-use crate::fields::Fields;
+use crate::fields::{Column, Fields};
 use crate::kernel::Kernel;
+use crate::quantity::{Quantity, Values};
+use crate::wall::Extrapolation;
 
-/// A quantity of neighbours that terms read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Quantity {
-    Velocity(usize),
-    Volume,
-    PressureTerm,
-    WallDepth,
-    StressTerm(usize),
-}
-
-impl Quantity {
-    /// Number of different quantities.
-    const COUNT: usize = 12;
-
-    const fn index(self) -> usize {
-        match self {
-            Self::Velocity(a) => a,
-            Self::Volume => 3,
-            Self::PressureTerm => 4,
-            Self::WallDepth => 5,
-            Self::StressTerm(k) => 6 + k,
-        }
-    }
-}
-
-/// Where a quantity is stored.
+/// What a place of the records holds.
 #[derive(Clone, Copy, Debug)]
 enum Source<T> {
     /// The coordinate in a direction, as it is seen.
     Position(usize),
-    State(State<T>),
-    Rate(Rate<T>),
+    Column(Column<T>),
     /// The place is not used.
     Nothing,
 }
@@ -55,34 +33,31 @@ pub(crate) struct Gathered<T> {
     pages: Vec<Record<Source<T>>>,
     /// Place of each quantity in the records; `ABSENT` if the sweep does not gather it.
     places: [usize; Quantity::COUNT],
+    /// The quantities that have a place.
+    present: Vec<Quantity>,
+    /// Whether the kernel itself is wanted, beside its gradient factor.
+    has_kernel: bool,
 }
 
 const ABSENT: usize = usize::MAX;
 
 impl<T: Real> Gathered<T> {
     /// The columns of `quantities`, each once.
-    pub fn new(fields: &Fields<T>, mut quantities: Vec<Quantity>) -> Self {
+    pub fn new(fields: &Fields<T>, mut quantities: Vec<Quantity>, has_kernel: bool) -> Self {
         quantities.sort_unstable();
         quantities.dedup();
         let mut sources: Vec<_> = (0..fields.position.len()).map(Source::Position).collect();
         let mut places = [ABSENT; Quantity::COUNT];
+        let mut present = Vec::new();
         for quantity in quantities {
-            let source = match quantity {
-                Quantity::Velocity(a) => Source::State(fields.velocity[a]),
-                Quantity::Volume => Source::State(fields.volume),
-                Quantity::PressureTerm => Source::State(fields.pressure_term),
-                Quantity::WallDepth => match fields.wall_depth {
-                    Some(wall_depth) => Source::State(wall_depth),
-                    None => continue,
-                },
-                Quantity::StressTerm(k) => Source::Rate(fields.stress_term[k]),
-            };
+            let Some(column) = fields.column(quantity) else { continue };
             places[quantity.index()] = sources.len();
-            sources.push(source);
+            sources.push(Source::Column(column));
+            present.push(quantity);
         }
         sources.resize(sources.len().next_multiple_of(RECORD), Source::Nothing);
         let pages = sources.as_chunks().0.to_vec();
-        Self { position: fields.position.clone(), pages, places }
+        Self { position: fields.position.clone(), pages, places, present, has_kernel }
     }
 
     /// What the places of a candidate's records hold.
@@ -162,8 +137,8 @@ impl<T: Real, const D: usize> Candidates<T, D> {
             for (page, sources) in self.pages.iter_mut().zip(gathered.pages()) {
                 let values: Record<&[T]> = std::array::from_fn(|s| match sources[s] {
                     Source::Position(_) | Source::Nothing => points[0],
-                    Source::State(column) => near.state(column).at(reach),
-                    Source::Rate(column) => near.rate(column).at(reach),
+                    Source::Column(Column::State(column)) => near.state(column).at(reach),
+                    Source::Column(Column::Rate(column)) => near.rate(column).at(reach),
                 });
                 page.resize(first + found.len(), [T::zero(); RECORD]);
                 for (record, &i) in page[first..].iter_mut().zip(found) {
@@ -187,18 +162,16 @@ impl<T: Real, const D: usize> Candidates<T, D> {
     #[inline(always)]
     pub fn particle(&self, gathered: &Gathered<T>, i: usize) -> Particle<T, D> {
         let i = self.own + i;
-        let value = |quantity: Quantity| match gathered.places[quantity.index()] {
-            ABSENT => T::zero(),
-            place => self.pages[place / RECORD][i][place % RECORD],
-        };
-        Particle {
-            position: std::array::from_fn(|a| self.position[a][i]),
-            velocity: std::array::from_fn(|a| value(Quantity::Velocity(a))),
-            volume: value(Quantity::Volume),
-            pressure_term: value(Quantity::PressureTerm),
-            wall_depth: value(Quantity::WallDepth),
-            stress_term: std::array::from_fn(|k| value(Quantity::StressTerm(k))),
+        let mut values = Values::zero();
+        for &quantity in &gathered.present {
+            let place = gathered.places[quantity.index()];
+            values[quantity] = self.pages[place / RECORD][i][place % RECORD];
         }
+        let mut position = [T::zero(); D];
+        for a in 0..D {
+            position[a] = self.position[a][i];
+        }
+        Particle { position, values, no_slip: Extrapolation::none() }
     }
 }
 
@@ -206,15 +179,31 @@ impl<T: Real, const D: usize> Candidates<T, D> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Particle<T, const D: usize> {
     pub position: [T; D],
-    pub velocity: [T; D],
-    pub volume: T,
-    pub pressure_term: T,
-    pub wall_depth: T,
-    pub stress_term: [T; 6],
+    values: Values<T>,
+    /// How it sees the velocities of wall particles.
+    pub no_slip: Extrapolation<T>,
+}
+
+impl<T: Real, const D: usize> Particle<T, D> {
+    /// Whether it is part of a body.
+    #[inline(always)]
+    pub fn is_wall(&self) -> bool {
+        self[Quantity::WallDepth] > T::zero()
+    }
+}
+
+impl<T: Real, const D: usize> Index<Quantity> for Particle<T, D> {
+    type Output = T;
+
+    /// A gathered quantity of its own.
+    #[inline(always)]
+    fn index(&self, quantity: Quantity) -> &T {
+        &self.values[quantity]
+    }
 }
 
 /// The neighbours of one particle, in lanes; the particle itself is one of them. Padded to whole
-/// vectors with neighbours of no effect (gradient factor 0).
+/// vectors with neighbours of no effect (kernel and gradient factor 0).
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<T, const D: usize> {
     found: Found,
@@ -222,6 +211,8 @@ pub(crate) struct Neighbours<T, const D: usize> {
     padded: usize,
     distance_squared: Vec<T>,
     gradient_factor: Vec<T>,
+    /// Empty if no term wants it.
+    kernel: Vec<T>,
     /// Per page of the candidates' records, a lane for each place. In the first, positions have
     /// been replaced by `x_i - x_j`.
     pages: Vec<[Vec<T>; RECORD]>,
@@ -235,6 +226,7 @@ impl<T: Real, const D: usize> Default for Neighbours<T, D> {
             padded: 0,
             distance_squared: Vec::new(),
             gradient_factor: Vec::new(),
+            kernel: Vec::new(),
             pages: Vec::new(),
             places: [ABSENT; Quantity::COUNT],
         }
@@ -275,7 +267,13 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
             }
         }
         let gradient_factor = &mut self.gradient_factor[..padded];
-        kernel.gradient_factor(distance_squared, gradient_factor);
+        if gathered.has_kernel {
+            let values = &mut self.kernel[..padded];
+            kernel.evaluate(distance_squared, values, gradient_factor);
+            values[count..].fill(T::zero());
+        } else {
+            kernel.gradient_factor(distance_squared, gradient_factor);
+        }
         // The padding repeats a neighbour: it must have no effect.
         gradient_factor[count..].fill(T::zero());
     }
@@ -288,7 +286,8 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
             .pages
             .iter_mut()
             .flatten()
-            .chain([&mut self.distance_squared, &mut self.gradient_factor]);
+            .chain([&mut self.distance_squared, &mut self.gradient_factor])
+            .chain(gathered.has_kernel.then_some(&mut self.kernel));
         for lanes in all {
             lanes.resize(length.max(lanes.len()), T::zero());
         }
@@ -320,6 +319,12 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[inline(always)]
     pub fn gradient_factor(&self) -> &[T] {
         &self.gradient_factor[..self.padded]
+    }
+
+    /// `W_ij`; only for terms that say that they use it.
+    #[inline(always)]
+    pub fn kernel(&self) -> &[T] {
+        &self.kernel[..self.padded]
     }
 
     /// Depth of the neighbours below the surface of a body, if there are bodies.

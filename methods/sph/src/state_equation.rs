@@ -1,10 +1,13 @@
 //! Equations of state: pressure from density.
 
 use finegrain_framework::space::Cells;
-use finegrain_framework::{Fault, Moment, Own, Real, UpdateStage};
+use finegrain_framework::{Fault, Moment, Own, Real, Stage, UpdateStage};
 use serde::{Deserialize, Serialize};
 
+use crate::evaluation::{Piece, Update};
 use crate::fields::Fields;
+use crate::physics::Fluid;
+use crate::quantity::Quantity;
 
 /// Pressure as a function of density.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,11 +47,31 @@ impl StateEquation {
 /// The update that begins an evaluation: volume and `p / rho^2` from density.
 #[derive(Clone, Debug)]
 pub(crate) struct Thermodynamics<T> {
-    pub fields: Fields<T>,
-    pub equation: StateEquation,
-    pub particle_mass: T,
-    pub reference_density: T,
-    pub sound_speed: T,
+    fields: Fields<T>,
+    equation: StateEquation,
+    particle_mass: T,
+    reference_density: T,
+    sound_speed: T,
+}
+
+impl<T: Real> Thermodynamics<T> {
+    /// For particles of one mass.
+    pub fn piece(fluid: &Fluid, particle_mass: T) -> Piece<T> {
+        let fluid = *fluid;
+        Piece::Update(Update {
+            reads: Vec::new(),
+            writes: vec![Quantity::Volume, Quantity::PressureTerm],
+            stage: Box::new(move |fields| {
+                Stage::update(Self {
+                    fields: fields.clone(),
+                    equation: fluid.state_equation,
+                    particle_mass,
+                    reference_density: T::of(fluid.density),
+                    sound_speed: T::of(fluid.sound_speed),
+                })
+            }),
+        })
+    }
 }
 
 impl<T: Real> UpdateStage<Cells<T>> for Thermodynamics<T> {

@@ -2,26 +2,43 @@
 
 use finegrain_framework::Real;
 
-use super::Work;
-use crate::neighbourhood::{Neighbours, Particle, Quantity};
+use super::{Term, Work};
+use crate::neighbourhood::{Neighbours, Particle};
+use crate::quantity::{Quantity, Values};
 
 /// `d rho_i / dt = sum_j m_j (v_i - v_j) . grad_i W_ij`, kg/(m^3 s), for equal masses `m`.
-#[inline(always)]
-pub(crate) fn continuity<T: Real, const D: usize>(
-    i: &Particle<T, D>,
-    near: &Neighbours<T, D>,
-    work: &mut Work<T>,
-    mass: T,
-) -> T {
-    let factor = near.gradient_factor();
-    let [jump, _] = work.lanes(factor.len());
-    jump.fill(T::zero());
-    for a in 0..D {
-        let (v, dx) = (near.values(Quantity::Velocity(a)), near.difference(a));
-        for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
-            *jump = (i.velocity[a] - v).mul_add(dx, *jump);
-        }
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Continuity<T> {
+    pub mass: T,
+}
+
+impl<T: Real> Term<T> for Continuity<T> {
+    fn reads(&self, dims: usize) -> Vec<Quantity> {
+        Quantity::vector(Quantity::Velocity, dims).collect()
     }
-    let [sum] = T::dots(factor, [&*jump]);
-    mass * sum
+
+    fn writes(&self, _: usize) -> Vec<Quantity> {
+        vec![Quantity::DensityRate]
+    }
+
+    #[inline(always)]
+    fn add<const D: usize>(
+        &self,
+        i: &Particle<T, D>,
+        near: &Neighbours<T, D>,
+        work: &mut Work<T>,
+        sums: &mut Values<T>,
+    ) {
+        let factor = near.gradient_factor();
+        let [jump, _] = work.lanes(factor.len());
+        jump.fill(T::zero());
+        for a in 0..D {
+            let (v, dx) = (near.values(Quantity::Velocity(a)), near.difference(a));
+            for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
+                *jump = (i[Quantity::Velocity(a)] - v).mul_add(dx, *jump);
+            }
+        }
+        let [sum] = T::dots(factor, [&*jump]);
+        sums[Quantity::DensityRate] += self.mass * sum;
+    }
 }

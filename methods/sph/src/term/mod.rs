@@ -1,7 +1,7 @@
 //! Terms: one piece of physics each, composed by a scene.
 //!
-//! A term is a sum over the neighbours of a particle. It reads gathered lanes and returns its
-//! contribution; the files read like their equations.
+//! A term is a sum over the neighbours of a particle. It reads gathered lanes and adds to the
+//! particle's sums; the files read like their equations.
 
 pub(crate) mod continuity;
 pub(crate) mod energy;
@@ -10,64 +10,113 @@ pub(crate) mod strain_rate;
 pub(crate) mod viscosity;
 
 use finegrain_framework::Real;
-use serde::{Deserialize, Serialize};
 
-use crate::neighbourhood::Quantity;
+use crate::neighbourhood::{Neighbours, Particle};
+use crate::quantity::{Quantity, Values};
 
-/// Viscous term of the momentum equation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Viscosity {
-    /// Strain-rate form of Holmes et al. (2011), eq. I.2: two rate stages, one for the
-    /// strain-rate tensor of every particle and one for its divergence.
-    StrainRate,
-    /// Morris, Fox & Zhu (1997), eq. 22: one rate stage, second derivative by difference of a
-    /// first derivative.
-    Morris,
+use continuity::Continuity;
+use energy::Energy;
+use momentum::{PressureGradient, StressDivergence};
+use strain_rate::StrainRate;
+use viscosity::MorrisViscosity;
+
+/// One piece of physics: a sum over neighbours.
+pub(crate) trait Term<T: Real> {
+    /// The quantities, its own and its neighbours', that a particle needs.
+    fn reads(&self, dims: usize) -> Vec<Quantity>;
+
+    /// The quantities that it adds to.
+    fn writes(&self, dims: usize) -> Vec<Quantity>;
+
+    /// Whether it needs the kernel itself, and not only its gradient.
+    fn uses_kernel(&self) -> bool {
+        false
+    }
+
+    /// Whether velocities in bodies matter to it, which the no-slip condition extrapolates.
+    fn sees_velocity_in_bodies(&self) -> bool {
+        false
+    }
+
+    /// Adds the sum for particle `i`.
+    fn add<const D: usize>(
+        &self,
+        i: &Particle<T, D>,
+        near: &Neighbours<T, D>,
+        work: &mut Work<T>,
+        sums: &mut Values<T>,
+    );
 }
 
-/// One term of a model, with its constants.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Term<T> {
-    /// Conservation of mass, eq. I.1.
-    Continuity,
-    /// Strain-rate tensor, for the strain-rate forms of viscosity and heating.
-    StrainRate(strain_rate::StrainRate<T>),
-    /// Pressure gradient of eq. I.2.
-    PressureGradient,
-    /// Divergence of the viscous stress of eq. I.2.
-    StressDivergence,
-    /// Viscosity of Morris et al.
-    MorrisViscosity(viscosity::Morris<T>),
-    /// Conservation of energy, eq. I.3.
-    Energy(energy::Energy<T>),
-}
+/// Declares the enumeration of all terms, which is itself a term: a choice at run time of what is
+/// compiled into one loop.
+macro_rules! terms {
+    ($($Name:ident),* $(,)?) => {
+        /// Any term, with its constants.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) enum AnyTerm<T> {
+            $($Name($Name<T>),)*
+        }
 
-impl<T: Real> Term<T> {
-    /// The quantities of neighbours that it reads.
-    pub fn reads(&self, dims: usize) -> Vec<Quantity> {
-        let velocity = (0..dims).map(Quantity::Velocity);
-        let stress = (0..crate::fields::symmetric(dims)).map(Quantity::StressTerm);
-        match self {
-            Self::Continuity => velocity.collect(),
-            Self::StrainRate(_) | Self::MorrisViscosity(_) => {
-                velocity.chain([Quantity::Volume, Quantity::WallDepth]).collect()
+        $(
+            impl<T> From<$Name<T>> for AnyTerm<T> {
+                fn from(term: $Name<T>) -> Self {
+                    Self::$Name(term)
+                }
             }
-            Self::PressureGradient => vec![Quantity::PressureTerm],
-            Self::StressDivergence => stress.chain([Quantity::WallDepth]).collect(),
-            Self::Energy(energy) => {
-                let own = if energy.is_viscous() { stress.collect() } else { Vec::new() };
-                let others = [Quantity::Volume, Quantity::PressureTerm];
-                velocity.chain(own).chain(others).collect()
+        )*
+
+        impl<T> AnyTerm<T> {
+            /// Its name, for error messages.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$Name(_) => stringify!($Name),)*
+                }
             }
         }
-    }
 
-    /// Whether it needs what another term's rate stage computes for the neighbours.
-    pub fn is_second(&self) -> bool {
-        matches!(self, Self::StressDivergence | Self::Energy(_))
-    }
+        impl<T: Real> Term<T> for AnyTerm<T> {
+            fn reads(&self, dims: usize) -> Vec<Quantity> {
+                match self {
+                    $(Self::$Name(term) => term.reads(dims),)*
+                }
+            }
+
+            fn writes(&self, dims: usize) -> Vec<Quantity> {
+                match self {
+                    $(Self::$Name(term) => term.writes(dims),)*
+                }
+            }
+
+            fn uses_kernel(&self) -> bool {
+                match self {
+                    $(Self::$Name(term) => Term::<T>::uses_kernel(term),)*
+                }
+            }
+
+            fn sees_velocity_in_bodies(&self) -> bool {
+                match self {
+                    $(Self::$Name(term) => Term::<T>::sees_velocity_in_bodies(term),)*
+                }
+            }
+
+            #[inline(always)]
+            fn add<const D: usize>(
+                &self,
+                i: &Particle<T, D>,
+                near: &Neighbours<T, D>,
+                work: &mut Work<T>,
+                sums: &mut Values<T>,
+            ) {
+                match self {
+                    $(Self::$Name(term) => term.add(i, near, work, sums),)*
+                }
+            }
+        }
+    };
 }
+
+terms!(Continuity, StrainRate, PressureGradient, StressDivergence, MorrisViscosity, Energy);
 
 /// Lanes that a term works with: a weight for each neighbour.
 #[derive(Clone, Debug, Default)]

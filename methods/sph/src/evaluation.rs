@@ -1,0 +1,136 @@
+//! The order in which the pieces of a model are evaluated: it follows from what they read and
+//! write.
+//!
+//! A piece is a term (a sum over neighbours) or an update (of a particle's own quantities). Terms
+//! that can are summed in one sweep over all pairs. A piece comes after those that write what it
+//! reads, and all terms that add to one quantity are in one sweep.
+
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Real, Stage};
+
+use crate::fields::Fields;
+use crate::quantity::Quantity;
+use crate::term::{AnyTerm, Term};
+
+/// Something that is evaluated.
+pub(crate) enum Piece<T: Real> {
+    Term(AnyTerm<T>),
+    Update(Update<T>),
+}
+
+/// An update of a particle's own quantities.
+pub(crate) struct Update<T: Real> {
+    pub reads: Vec<Quantity>,
+    pub writes: Vec<Quantity>,
+    /// Makes its stage once the columns are known.
+    pub stage: Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>,
+}
+
+impl<T: Real> Piece<T> {
+    /// The quantities that it needs.
+    pub fn reads(&self, dims: usize) -> Vec<Quantity> {
+        match self {
+            Self::Term(term) => term.reads(dims),
+            Self::Update(update) => update.reads.clone(),
+        }
+    }
+
+    /// The quantities that it computes.
+    pub fn writes(&self, dims: usize) -> Vec<Quantity> {
+        match self {
+            Self::Term(term) => term.writes(dims),
+            Self::Update(update) => update.writes.clone(),
+        }
+    }
+
+    /// The first slot from `slot` on that it may take: updates take the even ones, sweeps the odd.
+    fn from(&self, slot: usize) -> usize {
+        slot + usize::from((slot % 2 == 1) != matches!(self, Self::Term(_)))
+    }
+}
+
+/// Sorts pieces into slots, each an update or the terms of one sweep.
+///
+/// # Panics
+/// If pieces need each other in a circle.
+pub(crate) fn slots<T: Real>(pieces: Vec<Piece<T>>, dims: usize) -> Vec<Vec<Piece<T>>> {
+    let reads: Vec<_> = pieces.iter().map(|piece| piece.reads(dims)).collect();
+    let writes: Vec<_> = pieces.iter().map(|piece| piece.writes(dims)).collect();
+    let share = |a: &[Quantity], b: &[Quantity]| a.iter().any(|q| b.contains(q));
+    let mut slots: Vec<usize> = pieces.iter().map(|piece| piece.from(0)).collect();
+    let mut is_settled = false;
+    while !is_settled {
+        is_settled = true;
+        for i in 0..pieces.len() {
+            for j in 0..pieces.len() {
+                let least = if i != j && share(&reads[i], &writes[j]) {
+                    slots[j] + 1
+                } else if share(&writes[i], &writes[j]) {
+                    slots[j]
+                } else {
+                    0
+                };
+                if slots[i] < least {
+                    slots[i] = pieces[i].from(least);
+                    is_settled = false;
+                }
+            }
+            assert!(slots[i] <= 2 * pieces.len(), "terms need each other in a circle");
+        }
+    }
+    let mut sorted: Vec<Vec<Piece<T>>> = Vec::new();
+    sorted.resize_with(slots.iter().max().map_or(0, |last| last + 1), Vec::new);
+    for (piece, slot) in pieces.into_iter().zip(slots) {
+        sorted[slot].push(piece);
+    }
+    sorted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::term::continuity::Continuity;
+    use crate::term::momentum::{PressureGradient, StressDivergence};
+    use crate::term::strain_rate::StrainRate;
+
+    fn state_equation() -> Piece<f64> {
+        Piece::Update(Update {
+            reads: Vec::new(),
+            writes: vec![Quantity::Volume, Quantity::PressureTerm],
+            stage: Box::new(|_| unreachable!("never made")),
+        })
+    }
+
+    fn names(slots: &[Vec<Piece<f64>>]) -> Vec<Vec<&'static str>> {
+        let name = |piece: &Piece<f64>| match piece {
+            Piece::Term(AnyTerm::Continuity(_)) => "continuity",
+            Piece::Term(AnyTerm::PressureGradient(_)) => "pressure",
+            Piece::Term(AnyTerm::StrainRate(_)) => "strain",
+            Piece::Term(AnyTerm::StressDivergence(_)) => "stress",
+            Piece::Term(_) => "term",
+            Piece::Update(_) => "update",
+        };
+        slots.iter().map(|slot| slot.iter().map(name).collect()).collect()
+    }
+
+    #[test]
+    fn one_sweep_where_nothing_depends_on_rates_and_two_where_stress_does() {
+        let mass = 1.0;
+        let inviscid = vec![
+            Piece::Term(Continuity { mass }.into()),
+            Piece::Term(PressureGradient { mass }.into()),
+            state_equation(),
+        ];
+        assert_eq!(names(&slots(inviscid, 2)), [vec!["update"], vec!["continuity", "pressure"]]);
+        let viscous = vec![
+            Piece::Term(StressDivergence { mass }.into()),
+            Piece::Term(Continuity { mass }.into()),
+            Piece::Term(StrainRate { mass, dynamic_viscosity: 1.0 }.into()),
+            Piece::Term(PressureGradient { mass }.into()),
+            state_equation(),
+        ];
+        let expected =
+            [vec!["update"], vec!["continuity", "strain"], vec![], vec!["stress", "pressure"]];
+        assert_eq!(names(&slots(viscous, 2)), expected);
+    }
+}

@@ -1,0 +1,65 @@
+//! What a scene models.
+
+use finegrain_framework::shape::Shape;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{SphError, finite, not_negative, positive};
+use crate::state_equation::StateEquation;
+
+/// A weakly compressible fluid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fluid {
+    /// Reference density, kg/m^3.
+    pub density: f64,
+    /// Numerical sound speed, m/s: some ten times the largest speed.
+    pub sound_speed: f64,
+    /// Kinematic viscosity, m^2/s.
+    pub kinematic_viscosity: f64,
+    /// Pressure from density.
+    pub state_equation: StateEquation,
+}
+
+impl Fluid {
+    pub(crate) fn check(&self) -> Result<(), SphError> {
+        positive("density", self.density)?;
+        positive("sound_speed", self.sound_speed)?;
+        not_negative("kinematic_viscosity", self.kinematic_viscosity)
+    }
+}
+
+/// What is modelled besides mass and pressure; what is not named here costs nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Physics {
+    /// Viscous term, if any.
+    pub viscosity: Option<Viscosity>,
+    /// Energy equation.
+    pub energy: bool,
+    /// Constant acceleration of the fluid, m/s^2; zero if none.
+    pub body_acceleration: [f64; 3],
+    /// Bodies, filled with particles at rest and without slip.
+    pub bodies: Vec<Shape>,
+}
+
+impl Physics {
+    pub(crate) fn check(&self) -> Result<(), SphError> {
+        for acceleration in self.body_acceleration {
+            finite("body_acceleration", acceleration)?;
+        }
+        for (number, shape) in self.bodies.iter().enumerate() {
+            shape.check().map_err(|cause| SphError::Body { number, cause })?;
+        }
+        Ok(())
+    }
+}
+
+/// Viscous term of the momentum equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Viscosity {
+    /// Strain-rate form of Holmes et al. (2011), eq. I.2: two rate stages, one for the
+    /// strain-rate tensor of every particle and one for its divergence.
+    StrainRate,
+    /// Morris, Fox & Zhu (1997), eq. 22: one rate stage, second derivative by difference of a
+    /// first derivative.
+    Morris,
+}

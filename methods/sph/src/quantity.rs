@@ -1,0 +1,93 @@
+//! What particles have, and what terms read of neighbours and write.
+
+use std::ops::{Index, IndexMut};
+
+use finegrain_framework::Real;
+
+/// A scalar quantity, or one component of a vector or tensor. A model has columns only for those
+/// that its terms read or write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Quantity {
+    Velocity(usize),
+    Volume,
+    PressureTerm,
+    WallDepth,
+    StressTerm(usize),
+    Acceleration(usize),
+    DensityRate,
+    EnergyRate,
+}
+
+impl Quantity {
+    /// Number of different quantities.
+    pub const COUNT: usize = 17;
+
+    /// Its place among all.
+    #[inline(always)]
+    pub const fn index(self) -> usize {
+        match self {
+            Self::Velocity(a) => a,
+            Self::Volume => 3,
+            Self::PressureTerm => 4,
+            Self::WallDepth => 5,
+            Self::StressTerm(k) => 6 + k,
+            Self::Acceleration(a) => 12 + a,
+            Self::DensityRate => 15,
+            Self::EnergyRate => 16,
+        }
+    }
+
+    /// The components of a vector in `dims` dimensions.
+    pub fn vector(component: fn(usize) -> Self, dims: usize) -> impl Iterator<Item = Self> {
+        (0..dims).map(component)
+    }
+
+    /// The components of a symmetric tensor in `dims` dimensions, in the order xx, xy, yy, xz, yz,
+    /// zz.
+    pub fn symmetric(component: fn(usize) -> Self, dims: usize) -> impl Iterator<Item = Self> {
+        (0..dims * (dims + 1) / 2).map(component)
+    }
+}
+
+/// Place of component (a, b) of a symmetric tensor in the order xx, xy, yy, xz, yz, zz.
+#[inline(always)]
+pub(crate) const fn component(a: usize, b: usize) -> usize {
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    high * (high + 1) / 2 + low
+}
+
+/// A value for each quantity; 0 for those that are not in use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Values<T>([T; Quantity::COUNT]);
+
+impl<T: Real> Values<T> {
+    /// All zero.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self([T::zero(); Quantity::COUNT])
+    }
+
+    /// Adds a vector to the components that `component` names.
+    #[inline(always)]
+    pub fn add<const D: usize>(&mut self, component: fn(usize) -> Quantity, vector: [T; D]) {
+        for (a, x) in vector.into_iter().enumerate() {
+            self[component(a)] += x;
+        }
+    }
+}
+
+impl<T> Index<Quantity> for Values<T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn index(&self, quantity: Quantity) -> &T {
+        &self.0[quantity.index()]
+    }
+}
+
+impl<T> IndexMut<Quantity> for Values<T> {
+    #[inline(always)]
+    fn index_mut(&mut self, quantity: Quantity) -> &mut T {
+        &mut self.0[quantity.index()]
+    }
+}
