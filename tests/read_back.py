@@ -3,7 +3,9 @@
 
     pip install vtk meshio
     cargo test -p finegrain-framework --test format_read_back
-    python tests/read_back.py target/tmp/format
+    python tests/read_back.py FOLDER
+
+The test format_read_back says in its output where it leaves its files.
 
 Prints what the readers found, and fails if a file cannot be read, if an array is not finite or has
 another length than there are points, if the two readers disagree, or if a time series names a file

@@ -61,7 +61,7 @@ impl Team {
     /// A team of `workers`, the caller included.
     ///
     /// # Errors
-    /// If the system refuses a thread.
+    /// If the system refuses a thread. Those it has granted before sleep until the process ends.
     ///
     /// # Panics
     /// If `workers` is 0.

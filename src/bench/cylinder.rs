@@ -36,8 +36,8 @@ pub struct Plan {
     pub workers: Vec<usize>,
     /// Steps of a sample.
     pub steps: u64,
-    /// Samples of each; the numbers of workers take turns, so that a machine whose speed drifts
-    /// slows all of them.
+    /// Samples of each. The numbers of workers take turns every few steps, so that a machine whose
+    /// speed drifts slows all of them.
     pub repeats: usize,
     /// How workers meet.
     pub schedule: Schedule,
@@ -154,26 +154,20 @@ pub fn measure(plan: &Plan, mut say: impl FnMut(&Row)) -> Result<Vec<Row>, Scene
     }
 }
 
+/// Steps after which the next number of workers has its turn.
+const TURN: u64 = 2;
+
 fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Row>, SceneError> {
     let mut rows = Vec::new();
     for &width in &plan.widths {
-        let mut group: Vec<Row> = Vec::new();
+        let mut group = empty_rows::<T>(plan, width)?;
         for _ in 0..plan.repeats {
-            for (place, &workers) in plan.workers.iter().enumerate() {
-                memory::reset_peak();
-                let (seconds, simulation) = sample::<T>(plan, width, workers)?;
-                if group.len() <= place {
-                    group.push(row(plan, width, workers, simulation));
-                } else {
-                    drop(simulation);
+            let seconds = sample::<T>(plan, width)?;
+            for (row, &own) in group.iter_mut().zip(&seconds) {
+                row.seconds_per_step.push(own);
+                if plan.workers[0] == 1 && row.workers > 1 {
+                    row.alone.push(seconds[0]);
                 }
-                let alone = (plan.workers[0] == 1 && workers > 1)
-                    .then(|| group[0].seconds_per_step.last().copied())
-                    .flatten();
-                let row = &mut group[place];
-                row.peak_memory = row.peak_memory.max(memory::peak());
-                row.seconds_per_step.push(seconds);
-                row.alone.extend(alone);
                 say(row);
             }
         }
@@ -182,36 +176,66 @@ fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Ro
     Ok(rows)
 }
 
-fn row<T: Real>(
-    plan: &Plan,
-    width: f64,
-    workers: usize,
-    mut simulation: Simulation<Cells<T>>,
-) -> Row {
-    // Before anything else is allocated.
-    let peak_memory = memory::peak();
-    Row {
-        width,
-        particles: simulation.columns().points(),
-        workers,
-        neighbours: measure::mean_neighbours(&mut simulation.whole()),
-        sweeps: match plan.viscosity {
-            Viscosity::StrainRate => 2,
-            Viscosity::Morris => 1,
-        },
-        seconds_per_step: Vec::new(),
-        alone: Vec::new(),
-        peak_memory,
+/// A row for each number of workers without samples yet: what does not need a clock, from a run of
+/// one turn with nothing else in memory.
+fn empty_rows<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> {
+    let mut rows = Vec::new();
+    for &workers in &plan.workers {
+        memory::reset_peak();
+        let mut run = start_run::<T>(plan, width, workers)?.until(steps(TURN));
+        run.run()?;
+        // Before anything else is allocated.
+        let peak_memory = memory::peak();
+        let simulation = run.simulation_mut();
+        rows.push(Row {
+            width,
+            particles: simulation.columns().points(),
+            workers,
+            neighbours: measure::mean_neighbours(&mut simulation.whole()),
+            sweeps: match plan.viscosity {
+                Viscosity::StrainRate => 2,
+                Viscosity::Morris => 1,
+            },
+            seconds_per_step: Vec::new(),
+            alone: Vec::new(),
+            peak_memory,
+        });
     }
+    Ok(rows)
 }
 
-/// Seconds a step of one sample, results dumps included, initial preparations not; and the
-/// simulation.
-fn sample<T: Real>(
+/// Seconds a step of one sample for each number of workers, results dumps included, initial
+/// preparations not.
+fn sample<T: Real>(plan: &Plan, width: f64) -> Result<Vec<f64>, SceneError> {
+    let start = |&workers| start_run::<T>(plan, width, workers);
+    let mut runs = plan.workers.iter().map(start).collect::<Result<Vec<_>, _>>()?;
+    let mut seconds = vec![0.0; runs.len()];
+    let mut done = 0;
+    while done < plan.steps {
+        done = (done + TURN).min(plan.steps);
+        runs = runs.into_iter().map(|run| run.until(steps(done))).collect();
+        for (run, seconds) in runs.iter_mut().zip(&mut seconds) {
+            *seconds += run.run()?.wall_clock.as_secs_f64() / plan.steps as f64;
+        }
+    }
+    Ok(seconds)
+}
+
+fn steps(steps: u64) -> Until {
+    Until { steps: Some(steps), ..Until::default() }
+}
+
+/// Where the results dumps of a number of workers go.
+pub fn dump_folder(plan: &Plan, workers: usize) -> PathBuf {
+    plan.out.join(format!("workers-{workers}"))
+}
+
+/// A run that is ready for its first step.
+fn start_run<T: Real>(
     plan: &Plan,
     width: f64,
     workers: usize,
-) -> Result<(f64, Simulation<Cells<T>>), SceneError> {
+) -> Result<Run<Cells<T>>, SceneError> {
     let sph = model::<T>(width, plan.viscosity)?;
     let settings = Settings { schedule: plan.schedule, workers, ..Settings::default() };
     let mut simulation = Simulation::new(sph.model, settings)
@@ -221,12 +245,8 @@ fn sample<T: Real>(
         .scalar("identity")
         .scalar("density")
         .vector("velocity", ["velocity_x", "velocity_y", "velocity_z"]);
-    let mut run = Run::new(simulation)
-        .until(Until { steps: Some(plan.steps), ..Until::default() })
-        .out(plan.out.join("dumps"))
-        .dump(dump);
-    let summary = run.run()?;
-    Ok((summary.wall_clock.as_secs_f64() / plan.steps as f64, run.into_simulation()))
+    // The runs of different numbers of workers are under way at the same time.
+    Ok(Run::new(simulation).out(dump_folder(plan, workers)).dump(dump))
 }
 
 /// Writes the numbers as CSV.

@@ -130,7 +130,10 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
     for picture in pictures {
         writeln!(out, "picture:  {}", picture.display())?;
     }
-    writeln!(out, "ParaView: {}", plan.out.join("dumps").join("results.pvd").display())?;
+    for &workers in &plan.workers {
+        let series = cylinder::dump_folder(&plan, workers).join("results.pvd");
+        writeln!(out, "ParaView: {}", series.display())?;
+    }
     Ok(())
 }
 

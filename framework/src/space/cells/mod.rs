@@ -10,16 +10,19 @@
 //! every rate stage; a run past it ends with an error, never with a missed neighbour.
 
 mod block;
+mod divide;
+mod fit;
 mod lattice;
+mod region;
+mod reorder;
 mod sort;
 mod table;
 
 pub use block::{Cell, CellBlock, Run};
+pub use region::Region;
 
-use bytemuck::Zeroable;
-
-use crate::columns::{Columns, ElementKind, Handle, Line, State};
-use crate::domain::{Domain, Partition, Span};
+use crate::columns::{Columns, Handle, Line, State};
+use crate::domain::{Domain, Partition};
 use crate::real::Real;
 use crate::stage::Fault;
 use crate::team::Team;
@@ -28,18 +31,6 @@ use crate::viewable::{Geometry, Viewable};
 use lattice::Lattice;
 use sort::Sorter;
 use table::KeyTable;
-
-/// The box that particles live in.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Region {
-    /// Lower corner, one number a dimension.
-    pub lower: Vec<f64>,
-    /// Upper corner.
-    pub upper: Vec<f64>,
-    /// Which directions are periodic. In the others particles may go anywhere; the box there
-    /// follows them.
-    pub periodic: Vec<bool>,
-}
 
 /// Describes [`Cells`].
 #[derive(Clone, Debug)]
@@ -178,7 +169,7 @@ impl<T: Real> Cells<T> {
     /// # Errors
     /// If a position is not finite; names the particle.
     pub fn sort(&mut self, columns: &mut Columns, team: &mut Team) -> Result<(), Fault> {
-        self.wrap(columns, team)?;
+        self.region.wrap(columns, &self.positions, team)?;
         self.lattice = self.fit(columns);
         let dims = self.dims();
         let lattice = &self.lattice;
@@ -190,171 +181,11 @@ impl<T: Real> Cells<T> {
             self.reorder(columns, team);
         }
         for (&to, &from) in self.sorted_at.iter().zip(&self.positions) {
-            copy_column(columns, from, to);
+            columns.copy(from.id(), to.id());
         }
         self.divide(columns.points());
         Ok(())
     }
-
-    fn wrap(&self, columns: &mut Columns, team: &mut Team) -> Result<(), Fault> {
-        for (a, &column) in self.positions.iter().enumerate() {
-            let values = columns.values_mut(column);
-            if let Some(i) = values.iter().position(|x| !x.is_finite()) {
-                return Err(Fault::new(format!(
-                    "particle {i} has coordinate {} in direction {a}, which is not finite",
-                    values[i]
-                )));
-            }
-            if !self.region.periodic[a] {
-                continue;
-            }
-            let (lower, upper) = (self.region.lower[a], self.region.upper[a]);
-            let length = upper - lower;
-            let first = first_inside(lower);
-            team.for_each_chunk(values, 16_384, |_, chunk| {
-                for value in chunk {
-                    let x = value.as_f64();
-                    if !(lower..upper).contains(&x) {
-                        let wrapped = x - ((x - lower) / length).floor() * length;
-                        // Rounding may lead to the upper end, which is the lower end.
-                        let wrapped = T::of(wrapped);
-                        let is_inside = (lower..upper).contains(&wrapped.as_f64());
-                        *value = if is_inside { wrapped } else { first };
-                    }
-                }
-            });
-        }
-        Ok(())
-    }
-
-    /// The lattice for the present positions.
-    fn fit(&self, columns: &Columns) -> Lattice {
-        let dims = self.dims();
-        let (mut lower, mut length, mut periodic) = ([0.0; 3], [1.0; 3], [false; 3]);
-        for a in 0..dims {
-            periodic[a] = self.region.periodic[a];
-            let (mut low, mut high) = (self.region.lower[a], self.region.upper[a]);
-            if !periodic[a] {
-                let values = columns.values(self.positions[a]);
-                let (least, most) = values
-                    .iter()
-                    .fold((T::infinity(), T::neg_infinity()), |m, &x| (m.0.min(x), m.1.max(x)));
-                if !values.is_empty() {
-                    (low, high) = (least.as_f64(), most.as_f64());
-                }
-            }
-            lower[a] = low;
-            length[a] = high - low;
-        }
-        // Positions are put into cells with a rounding error, which must not part two particles
-        // that are exactly the range away from one another.
-        let size = (0..dims).map(|a| lower[a].abs() + length[a]).fold(0.0, f64::max);
-        let range = self.range + self.skin;
-        let range = range + (8.0 * f64::EPSILON * size).min(range);
-        let mut lattice = Lattice::new(lower, length, periodic, dims, range);
-        // Particles a cell holds where there are any: judged from the whole box, which is an
-        // underestimate for a sparse one; blocks are then a little large.
-        let cells: f64 = lattice.counts.iter().map(|&n| n as f64).product();
-        let per_cell = (columns.points() as f64 / cells).max(1.0);
-        // As long in every direction as can be, where there are few cells first: what is missing
-        // there, the other directions make up for.
-        let mut wanted = self.block_points as f64 / per_cell;
-        let mut axes = [0, 1, 2];
-        axes[..dims].sort_unstable_by_key(|&a| lattice.counts[a]);
-        for (&a, left) in axes[..dims].iter().zip((1..=dims).rev()) {
-            let edge = wanted.max(1.0).powf(1.0 / left as f64).round() as i64;
-            lattice.block[a] = edge.min(lattice.counts[a]);
-            wanted /= lattice.block[a] as f64;
-        }
-        lattice
-    }
-
-    fn reorder(&mut self, columns: &mut Columns, team: &mut Team) {
-        for id in columns.ids() {
-            let column = columns.column(id);
-            let kind = column.kind();
-            if !column.is_kept() {
-                continue;
-            }
-            self.spare.resize(columns.lines(id), Line::zeroed());
-            let from = columns.bytes(id);
-            let sorter = &self.sorter;
-            let to: &mut [u8] = bytemuck::cast_slice_mut(&mut self.spare);
-            let to = &mut to[..from.len()];
-            match kind.size() {
-                8 => gather::<u64>(team, sorter, from, to),
-                4 => gather::<u32>(team, sorter, from, to),
-                _ => gather::<u8>(team, sorter, from, to),
-            }
-            debug_assert!(kind != ElementKind::U8 || kind.size() == 1);
-            columns.exchange_lines(id, &mut self.spare);
-        }
-    }
-
-    /// Makes cells, blocks and partition from the sorted keys.
-    fn divide(&mut self, points: usize) {
-        let lattice = &self.lattice;
-        self.cells.clear();
-        for (i, key) in self.sorter.keys().enumerate() {
-            if self.cells.last().is_none_or(|&(last, _)| last != key) {
-                self.cells.push((key, i as u32));
-            }
-        }
-        self.cell_table
-            .fill(self.cells.iter().map(|&(key, _)| lattice.key(lattice.cell_sorted(key))));
-        let volume = lattice.block.iter().product::<i64>() as u64;
-        self.blocks.clear();
-        for (c, &(key, _)) in self.cells.iter().enumerate() {
-            let block = key / volume;
-            if self.blocks.last().is_none_or(|&(last, _)| last != block) {
-                self.blocks.push((block, c as u32));
-            }
-        }
-        self.block_table.fill(self.blocks.iter().map(|&(key, _)| key));
-        self.partition.clear(points);
-        for (id, &(key, _)) in self.blocks.iter().enumerate() {
-            let at = lattice.block_at(key);
-            for (a, near) in self.near_axes.iter_mut().enumerate() {
-                lattice.near_blocks(a, at[a], near);
-            }
-            self.near_blocks.clear();
-            let [xs, ys, zs] = &self.near_axes;
-            for &k in zs {
-                for &j in ys {
-                    for &i in xs {
-                        let key = lattice.block_key([i, j, k]);
-                        self.near_blocks.extend(self.block_table.get(key).map(|b| b as u32));
-                    }
-                }
-            }
-            self.near_blocks.retain(|&b| b as usize != id);
-            self.near_blocks.sort_unstable();
-            let span = Span {
-                start: self.first_point(self.blocks[id].1 as usize, points),
-                end: self.first_point(self.cell_end(id), points),
-            };
-            self.partition.push([span], self.near_blocks.iter().copied());
-        }
-        self.partition
-            .seal()
-            .expect("sorted blocks own consecutive spans and see each other mutually");
-    }
-
-    /// One past the last cell of a block.
-    fn cell_end(&self, block: usize) -> usize {
-        self.blocks.get(block + 1).map_or(self.cells.len(), |&(_, first)| first as usize)
-    }
-
-    /// First particle of a cell; past the last cell, the number of particles.
-    fn first_point(&self, cell: usize, points: usize) -> usize {
-        self.cells.get(cell).map_or(points, |&(_, first)| first as usize)
-    }
-}
-
-/// The number of type `T` that is at least `lower` and next to it.
-fn first_inside<T: Real>(lower: f64) -> T {
-    let first = T::of(lower);
-    if first.as_f64() < lower { first + T::epsilon() * first.abs() } else { first }
 }
 
 /// The values of up to three columns.
@@ -370,26 +201,6 @@ fn position<T: Real>(at: &[&[T]], i: usize) -> [f64; 3] {
         *x = at[i].as_f64();
     }
     x
-}
-
-fn copy_column<T: Real>(columns: &mut Columns, from: State<T>, to: State<T>) {
-    let (from, to) = (from.id(), to.id());
-    columns.copy(from, to);
-}
-
-fn gather<U: bytemuck::Pod + Send + Sync>(
-    team: &mut Team,
-    sorter: &Sorter,
-    from: &[u8],
-    to: &mut [u8],
-) {
-    const CHUNK: usize = 16_384;
-    let from: &[U] = bytemuck::cast_slice(from);
-    team.for_each_chunk(bytemuck::cast_slice_mut::<u8, U>(to), CHUNK, |k, chunk| {
-        for (i, x) in chunk.iter_mut().enumerate() {
-            *x = from[sorter.source(k * CHUNK + i)];
-        }
-    });
 }
 
 impl<T: Real> Domain for Cells<T> {

@@ -1,0 +1,70 @@
+//! What a stage may see and touch: disjoint parts cut from shared columns.
+//!
+//! This is one of the few modules with `unsafe`. The argument, once for all of it:
+//!
+//! * A [`Partition`] is sealed: every point has one owner. Parts of different sub-domains
+//!   never share an element.
+//! * A schedule runs sub-domain `i`'s part `p` of a step only when `i` and all its neighbours
+//!   have finished part `p - 1`, and lets none of them begin part `p + 1` before `i` has
+//!   finished `p`. So whatever runs beside it *within sight* runs the same part `p`.
+//! * In a rate part, everybody writes only columns in `writes` and reads from others only
+//!   columns that are not. In an update part, everybody touches only what it owns.
+//!
+//! Hence no element that is being written is visible to anybody else. What a stage author
+//! could get wrong (a column both read from neighbours and written, a span that is not a
+//! neighbour's, one column borrowed twice) is checked here and panics, which the run reports
+//! as an error of that stage.
+
+mod near;
+mod own;
+mod part;
+
+pub use near::{Near, Reach, View};
+pub use own::{Own, Rates};
+pub use part::{Part, PartMut};
+
+use crate::columns::{ColumnId, Columns, Element, ElementKind};
+use crate::domain::Partition;
+
+/// Address and element type of one column's memory.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slot {
+    address: *mut u8,
+    kind: ElementKind,
+}
+
+// SAFETY: a slot is only an address; every access through it is in this module and argued there.
+unsafe impl Send for Slot {}
+// SAFETY: as for `Send`.
+unsafe impl Sync for Slot {}
+
+/// Writes the slots of all columns, in order of their ids, into `slots`.
+pub(crate) fn slots_of(columns: &mut Columns, slots: &mut Vec<Slot>) {
+    slots.clear();
+    slots.extend(columns.addresses().map(|(address, kind)| Slot { address, kind }));
+}
+
+/// A sub-domain with the memory that its stages are to work on.
+pub(crate) struct Place<'a, D> {
+    pub domain: &'a D,
+    pub partition: &'a Partition,
+    pub id: usize,
+    pub slots: &'a [Slot],
+}
+
+impl<D> Clone for Place<'_, D> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<D> Copy for Place<'_, D> {}
+
+impl<D> Place<'_, D> {
+    fn base<T: Element>(&self, id: ColumnId) -> *mut T {
+        let slot = self.slots.get(id.0 as usize).filter(|slot| slot.kind == T::KIND);
+        match slot {
+            Some(slot) => slot.address.cast(),
+            None => panic!("column handle {} belongs to other columns", id.0),
+        }
+    }
+}

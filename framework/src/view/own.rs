@@ -1,0 +1,192 @@
+//! What a stage writes: own rates in a rate stage, own state in an update stage. The argument for
+//! its `unsafe` is the [parent's](super).
+
+use super::{Part, PartMut, Place};
+use crate::columns::{ColumnId, ColumnSet, Element, ElementKind, Handle, Rate, State};
+use crate::domain::{Domain, Span};
+
+/// Which columns of one sub-domain have been borrowed, and how.
+#[derive(Debug, Default, PartialEq)]
+struct Borrows {
+    shared: ColumnSet,
+    exclusive: ColumnSet,
+}
+
+impl Borrows {
+    fn share(&mut self, id: ColumnId) {
+        assert!(!self.exclusive.contains(id), "column {} is already borrowed for writing", id.0);
+        self.shared.insert(id);
+    }
+
+    fn claim(&mut self, id: ColumnId) {
+        assert!(
+            !self.shared.contains(id) && self.exclusive.insert(id),
+            "column {} is already borrowed",
+            id.0
+        );
+    }
+}
+
+/// A sub-domain's own part of the rates, to be written by a rate stage.
+pub struct Rates<'a, D: Domain> {
+    place: Place<'a, D>,
+    writes: ColumnSet,
+    borrows: Borrows,
+}
+
+impl<'a, D: Domain> Rates<'a, D> {
+    /// # Safety
+    /// As [`Near::new`] for the partition and slots. As long as `'a` lasts, nobody else touches
+    /// the columns in `writes` in the sub-domain's spans.
+    pub(crate) unsafe fn new(place: Place<'a, D>, writes: ColumnSet) -> Self {
+        Self { place, writes, borrows: Borrows::default() }
+    }
+
+    /// The sub-domain's part of a rate column; each column can be had once per call.
+    ///
+    /// # Panics
+    /// If the stage does not list the column in [`crate::RateStage::writes`], or has it already.
+    pub fn column<T: Element>(&mut self, column: Rate<T>) -> PartMut<'a, T> {
+        assert!(
+            self.writes.contains(column.id()),
+            "column {} is written but not listed in the stage's `writes`",
+            column.id().0
+        );
+        self.borrows.claim(column.id());
+        let spans = self.place.partition.spans(self.place.id);
+        // SAFETY: the spans are the sub-domain's own; `Rates::new` promises that nobody else touches
+        // the column there, and `claim` that it is had only once.
+        unsafe { PartMut::new(self.place.base(column.id()), spans) }
+    }
+
+    /// The divided space.
+    pub fn domain(&self) -> &'a D {
+        self.place.domain
+    }
+
+    /// Number of the sub-domain.
+    pub fn id(&self) -> usize {
+        self.place.id
+    }
+}
+
+/// A sub-domain's own state, to be advanced by an update stage, and its own rates.
+pub struct Own<'a, D: Domain> {
+    place: Place<'a, D>,
+    borrows: Borrows,
+}
+
+impl<'a, D: Domain> Own<'a, D> {
+    /// # Safety
+    /// As [`Near::new`] for the partition and slots. As long as `'a` lasts, nobody else touches
+    /// the sub-domain's spans of any column.
+    pub(crate) unsafe fn new(place: Place<'a, D>) -> Self {
+        Self { place, borrows: Borrows::default() }
+    }
+
+    /// The divided space.
+    pub fn domain(&self) -> &'a D {
+        self.place.domain
+    }
+
+    /// The sub-domain.
+    pub fn sub_domain(&self) -> D::SubDomain<'a> {
+        self.place.domain.sub_domain(self.place.id)
+    }
+
+    /// Number of the sub-domain.
+    pub fn id(&self) -> usize {
+        self.place.id
+    }
+
+    /// The points it owns.
+    pub fn spans(&self) -> &'a [Span] {
+        self.place.partition.spans(self.place.id)
+    }
+
+    /// Own rates.
+    ///
+    /// # Panics
+    /// If the handle belongs to other columns.
+    pub fn rate<T: Element>(&mut self, column: Rate<T>) -> Part<'a, T> {
+        self.shared(column)
+    }
+
+    /// Own state, read only.
+    ///
+    /// # Panics
+    /// If the column is already borrowed for writing or the handle belongs to other columns.
+    pub fn state<T: Element>(&mut self, column: State<T>) -> Part<'a, T> {
+        self.shared(column)
+    }
+
+    /// Own state, to be advanced; each column can be had once per call.
+    ///
+    /// # Panics
+    /// If the column is already borrowed or the handle belongs to other columns.
+    pub fn state_mut<T: Element>(&mut self, column: State<T>) -> PartMut<'a, T> {
+        self.part_mut(column.id())
+    }
+
+    fn shared<H: Handle>(&mut self, column: H) -> Part<'a, H::Element> {
+        self.part(column.id())
+    }
+
+    /// Own part of any column, read only; panics as [`Own::state`].
+    pub(crate) fn part<T: Element>(&mut self, id: ColumnId) -> Part<'a, T> {
+        self.borrows.share(id);
+        // SAFETY: the spans are the sub-domain's own; `Own::new` promises that nobody else touches
+        // them, and `share` that the column is not borrowed for writing.
+        unsafe { Part::new(self.place.base(id), self.spans()) }
+    }
+
+    /// Own part of any column, to be written; panics as [`Own::state_mut`].
+    pub(crate) fn part_mut<T: Element>(&mut self, id: ColumnId) -> PartMut<'a, T> {
+        self.borrows.claim(id);
+        // SAFETY: as in `part`, with `claim` for the only borrow of the column.
+        unsafe { PartMut::new(self.place.base(id), self.spans()) }
+    }
+
+    /// Element type of a column.
+    pub(crate) fn kind(&self, id: ColumnId) -> ElementKind {
+        self.place.slots[id.0 as usize].kind
+    }
+
+    /// The same own part with nothing borrowed, for as long as this one is not used.
+    ///
+    /// # Panics
+    /// If something has been borrowed from this one: it might still be in use.
+    pub(crate) fn reborrow(&mut self) -> Own<'_, D> {
+        assert_eq!(self.borrows, Borrows::default(), "columns are borrowed");
+        Own { place: self.place, borrows: Borrows::default() }
+    }
+
+    /// Whether all own values of a column are finite; integers always are.
+    pub(crate) fn is_finite(&self, id: ColumnId) -> bool {
+        fn all_finite<T: num_traits::Float + Element, D: Domain>(
+            own: &Own<'_, D>,
+            id: ColumnId,
+        ) -> bool {
+            assert!(!own.borrows.exclusive.contains(id), "column {} is being written", id.0);
+            // SAFETY: as in `Own::part`; what is read here does not outlive this borrow of `own`.
+            let part = unsafe { Part::new(own.place.base::<T>(id), own.spans()) };
+            // x * 0 is 0 for finite x and NaN otherwise; eight sums, so that it vectorises.
+            (0..own.spans().len()).all(|k| {
+                let values = part.span(k);
+                let (chunks, rest) = values.as_chunks::<8>();
+                let mut sums = [T::zero(); 8];
+                for chunk in chunks {
+                    for (sum, &x) in sums.iter_mut().zip(chunk) {
+                        *sum = *sum + x * T::zero();
+                    }
+                }
+                sums.iter().chain(rest).all(|x| x.is_finite())
+            })
+        }
+        match self.place.slots[id.0 as usize].kind {
+            ElementKind::F32 => all_finite::<f32, D>(self, id),
+            ElementKind::F64 => all_finite::<f64, D>(self, id),
+            _ => true,
+        }
+    }
+}
