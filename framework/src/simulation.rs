@@ -35,6 +35,8 @@ pub struct Simulation<D: Domain> {
     /// Steps until whole-domain work is due.
     pace_left: u64,
     end_time: Option<f64>,
+    /// Instruction sets that the lanes were computed with since the beginning of time.
+    instruction_sets: Vec<String>,
     begun: bool,
     settings: Settings,
 }
@@ -58,6 +60,7 @@ impl<D: Domain> Simulation<D> {
             clock: Clock::new(0.0),
             pace_left: 0,
             end_time: None,
+            instruction_sets: vec![crate::lanes::instruction_set().to_owned()],
             begun: false,
             settings,
         })
@@ -187,6 +190,13 @@ impl<D: Domain> Simulation<D> {
     /// Steps until whole-domain work is due again or the end time is reached, whichever is first.
     pub fn pace_left(&self) -> u64 {
         self.pace_left
+    }
+
+    /// The instruction sets that it has been computed with since the beginning of time, in order of
+    /// first use: several after a restart on another kind of processor. The same bits are promised
+    /// for one.
+    pub fn instruction_sets(&self) -> &[String] {
+        &self.instruction_sets
     }
 
     /// Hash of all kept columns' bits and of the number of steps: two runs agree if and (but for

@@ -79,7 +79,7 @@ struct Line<'a> {
     precision: Precision,
     schedule: &'a str,
     workers: usize,
-    instruction_set: &'a str,
+    instruction_sets: &'a [String],
     stopped: String,
     steps: u64,
     time: f64,
@@ -161,7 +161,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
             precision,
             schedule: arguments.schedule.name(),
             workers,
-            instruction_set: finegrain::framework::lanes::instruction_set(),
+            instruction_sets: &report.instruction_sets,
             stopped: report.stopped.to_string(),
             steps: report.steps,
             time: report.time,
@@ -197,6 +197,10 @@ fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
         }
     }
     writeln!(out, "  state hash {:016x}", report.state_hash)?;
+    if report.instruction_sets.len() > 1 {
+        let sets = report.instruction_sets.join(", then ");
+        writeln!(out, "  computed with {sets}: the bits are not those of either alone")?;
+    }
     for file in report.files.iter().filter(|f| f.extension().is_some_and(|e| e != "vtu")) {
         writeln!(out, "  wrote {}", file.display())?;
     }

@@ -24,6 +24,9 @@ pub struct Report {
     pub wall_s: f64,
     /// Hash of the state's bits.
     pub state_hash: u64,
+    /// Instruction sets that it was computed with; several after a restart on another processor, and
+    /// then the last bits may differ from those of an uninterrupted run.
+    pub instruction_sets: Vec<String>,
     /// The scene's named scalar results.
     pub results: BTreeMap<&'static str, f64>,
     /// Relative errors where a reference exists for these parameters.
@@ -45,6 +48,7 @@ impl Report {
             time: summary.time,
             wall_s: summary.wall_clock.as_secs_f64(),
             state_hash: summary.state_hash,
+            instruction_sets: summary.instruction_sets.clone(),
             results: BTreeMap::new(),
             errors: BTreeMap::new(),
             files: summary.files.clone(),

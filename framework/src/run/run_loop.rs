@@ -47,6 +47,7 @@ impl<D: Domain> Run<D> {
                     time: simulation.clock().time(),
                     wall_clock: watch.elapsed(),
                     state_hash: simulation.state_hash(),
+                    instruction_sets: simulation.instruction_sets().to_vec(),
                     histories: self.histories.clone(),
                     files,
                     last_checkpoint: self.last_checkpoint.clone(),

@@ -20,6 +20,8 @@ pub struct Summary {
     pub wall_clock: Duration,
     /// [`Simulation::state_hash`](crate::Simulation::state_hash) at the end.
     pub state_hash: u64,
+    /// [`Simulation::instruction_sets`](crate::Simulation::instruction_sets).
+    pub instruction_sets: Vec<String>,
     /// The monitors' histories since the beginning of time, in order of declaration.
     pub histories: Vec<History>,
     /// Files written, in order, but for checkpoints that were removed again.

@@ -21,6 +21,7 @@ pub struct Position {
     begun: bool,
     end_time: Option<f64>,
     points: u64,
+    instruction_sets: Vec<String>,
     /// What [`Domain::save`] gave.
     domain: Vec<u64>,
 }
@@ -94,6 +95,7 @@ impl<D: Domain> Simulation<D> {
             begun: self.begun,
             end_time: self.end_time,
             points: self.columns().points() as u64,
+            instruction_sets: self.instruction_sets.clone(),
             domain: self.domain().save(),
         }
     }
@@ -164,6 +166,11 @@ impl<D: Domain> Simulation<D> {
         self.pace_left = position.pace_left;
         self.begun = position.begun;
         self.end_time = position.end_time;
+        self.instruction_sets = position.instruction_sets;
+        let now = crate::lanes::instruction_set();
+        if self.instruction_sets.iter().all(|known| known != now) {
+            self.instruction_sets.push(now.to_owned());
+        }
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use crate::checkpoint::{CheckpointError, CheckpointReader, CheckpointWriter, Hea
 use crate::format::Values;
 
 /// Version of the metadata: of [`Saved`] and all in it.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Metadata of a checkpoint.
 #[derive(Debug, Serialize, Deserialize)]
