@@ -219,6 +219,12 @@ impl<D: Domain> Step<D> {
         names.join(" + ")
     }
 
+    /// What it consists of, in words: the stages in order, each with its time in the step.
+    pub(crate) fn outline(&self) -> String {
+        let stage = |e: &Entry| format!("{} at {}", self.stages[e.stage].name(), e.c);
+        self.entries.iter().map(stage).collect::<Vec<_>>().join(", ")
+    }
+
     /// The table to look a column's memory up in, for entry `entry` of a step before which the
     /// pairs in `parity` have been exchanged; `None` for the state after the step's last stage.
     pub(crate) fn swapped_before(&self, parity: u64, entry: Option<usize>) -> u64 {

@@ -19,6 +19,24 @@ fn checkpoint() -> (tempfile::TempDir, PathBuf) {
     (folder, summary.last_checkpoint.unwrap())
 }
 
+/// `seven`, as checkpoints of a run know it.
+const SCENE: u64 = 0x44cd_1a7c_1490_7a28;
+
+/// An update stage that does nothing, under any name.
+struct Nothing(&'static str);
+
+impl<D: Domain> UpdateStage<D> for Nothing {
+    type Scratch = ();
+
+    fn name(&self) -> &str {
+        self.0
+    }
+
+    fn update(&self, _: &mut Own<'_, D>, _: &mut (), _: &Moment) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
 fn simulation<D: Domain>(model: Model<D>) -> Simulation<D> {
     Simulation::new(model, settings(1)).unwrap()
 }
@@ -37,7 +55,7 @@ fn other_columns(names: &[&str]) -> Model<Grid> {
 fn another_method_or_scene() {
     let (_folder, path) = checkpoint();
     let mut other = simulation((LEAPFROG.model)());
-    let error = other.restore(&path, 7).unwrap_err();
+    let error = other.restore(&path, SCENE).unwrap_err();
     assert!(
         matches!(&error, RestoreError::Checkpoint(CheckpointError::WrongMethod { expected, found, .. })
             if expected == "oscillators" && found == "heat"),
@@ -55,7 +73,7 @@ fn another_number_of_points() {
     let mut columns = Columns::new(domain.points());
     columns.state::<f64>("temperature");
     let model = Model::with_fixed_dt("heat", domain, columns, Step::builder().build(), 0.1);
-    let error = simulation(model).restore(&path, 7).unwrap_err();
+    let error = simulation(model).restore(&path, SCENE).unwrap_err();
     assert!(matches!(error, RestoreError::Points { expected: 135, found: 126, .. }), "{error}");
 }
 
@@ -67,7 +85,7 @@ fn other_columns_leave_the_simulation_as_it_was() {
     {
         let mut other = simulation(other_columns(names));
         let before = (other.state_hash(), other.position());
-        let error = other.restore(&path, 7).unwrap_err();
+        let error = other.restore(&path, SCENE).unwrap_err();
         assert!(error.to_string().contains(word), "{error}");
         assert_eq!((other.state_hash(), other.position()), before);
     }
@@ -75,7 +93,7 @@ fn other_columns_leave_the_simulation_as_it_was() {
     columns.state::<f32>("temperature");
     let domain = Grid::builder([9, 14]).build();
     let model = Model::with_fixed_dt("heat", domain, columns, Step::builder().build(), 0.1);
-    let error = simulation(model).restore(&path, 7).unwrap_err();
+    let error = simulation(model).restore(&path, SCENE).unwrap_err();
     assert!(matches!(error, RestoreError::Checkpoint(CheckpointError::WrongKind { .. })));
 }
 
@@ -84,8 +102,8 @@ fn other_columns_leave_the_simulation_as_it_was() {
 fn another_integrator() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("leapfrog.ckpt");
-    simulation((LEAPFROG.model)()).save(&path, 7).unwrap();
-    let error = simulation((RK4.model)()).restore(&path, 7).unwrap_err();
+    simulation((LEAPFROG.model)()).save(&path, SCENE).unwrap();
+    let error = simulation((RK4.model)()).restore(&path, SCENE).unwrap_err();
     assert!(matches!(&error, RestoreError::Column { column, .. } if column == "acceleration"));
 }
 
@@ -103,9 +121,13 @@ fn another_division_of_space() {
         }
     }
     let domain = Independent::new(columns.points());
-    let fake = Model::with_fixed_dt("swarm", domain, columns, Step::builder().build(), 0.1);
-    simulation(fake).save(&path, 7).unwrap();
-    let error = simulation(swarm).restore(&path, 7).unwrap_err();
+    let step = Step::builder()
+        .stage_at(0.0, &Stage::update(Nothing("integrator update")))
+        .stage_at(1.0, &Stage::update(Nothing("Repulsion")))
+        .stage_at(1.0, &Stage::update(Nothing("integrator update")));
+    let fake = Model::with_fixed_dt("swarm", domain, columns, step.build(), 0.1);
+    simulation(fake).save(&path, SCENE).unwrap();
+    let error = simulation(swarm).restore(&path, SCENE).unwrap_err();
     assert!(matches!(error, RestoreError::Domain { .. }), "{error}");
 }
 
@@ -116,7 +138,7 @@ fn another_monitor() {
     let failed = run::Run::new(simulation)
         .until(Until { steps: Some(5), ..Until::default() })
         .out(folder.path())
-        .scene_hash(7)
+        .scene("seven")
         .monitor("heat", Every::Steps(1), ["mean"], |_| [0.0])
         .restart_from(path)
         .run()
@@ -138,4 +160,44 @@ fn a_simulation_saves_itself() {
     second.advance(6).unwrap();
     assert_eq!(first.state_hash(), second.state_hash());
     assert_eq!(first.position(), second.position());
+}
+
+#[test]
+fn another_scene_says_what_differs() {
+    let (folder, path) = checkpoint();
+    let run = plan(&HEAT, settings(0), folder.path()).scene("seven\nresolution = 8");
+    let until = Until { steps: Some(5), ..Until::default() };
+    let failed = run.until(until).restart_from(&path).run().unwrap_err();
+    let said = failed.to_string();
+    assert!(said.ends_with("is of another scene: resolution = 8 here"), "{said}");
+    // A main that returns it says so too.
+    assert_eq!(format!("{failed:?}"), said);
+}
+
+#[test]
+fn the_same_columns_stepped_otherwise() {
+    let (_folder, path) = checkpoint();
+    let mut model = (HEAT.model)();
+    model.plan.step = Step::builder().update(Nothing("rest")).build();
+    let error = simulation(model).restore(&path, SCENE).unwrap_err();
+    assert!(
+        matches!(&error, RestoreError::Step { expected, .. } if expected == "rest at 0"),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_end_before_the_checkpoint() {
+    let (folder, path) = checkpoint();
+    for (until, end) in [
+        (Until { steps: Some(2), ..Until::default() }, "step 2"),
+        (Until { time: Some(1e-9), ..Until::default() }, "time 0.000000001"),
+    ] {
+        let run = plan(&HEAT, settings(0), folder.path()).until(until);
+        let failed = run.restart_from(&path).run().unwrap_err();
+        assert!(
+            matches!(&failed.cause, RunFailure::PastEnd { end: at, .. } if at == end),
+            "{failed}"
+        );
+    }
 }

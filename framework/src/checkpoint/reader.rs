@@ -61,18 +61,27 @@ impl CheckpointReader {
     /// # Errors
     /// If it is of another.
     pub fn require(&self, method: &str, scene_hash: u64) -> Result<(), CheckpointError> {
-        if self.header.method != method {
-            return Err(CheckpointError::WrongMethod {
-                path: self.source.path().to_path_buf(),
-                expected: method.to_string(),
-                found: self.header.method.clone(),
-            });
-        }
+        self.require_method(method)?;
         if self.header.scene_hash != scene_hash {
             return Err(CheckpointError::WrongScene {
                 path: self.source.path().to_path_buf(),
                 expected: scene_hash,
                 found: self.header.scene_hash,
+            });
+        }
+        Ok(())
+    }
+
+    /// Makes sure that the checkpoint is of this method.
+    ///
+    /// # Errors
+    /// If it is of another.
+    pub fn require_method(&self, method: &str) -> Result<(), CheckpointError> {
+        if self.header.method != method {
+            return Err(CheckpointError::WrongMethod {
+                path: self.source.path().to_path_buf(),
+                expected: method.to_string(),
+                found: self.header.method.clone(),
             });
         }
         Ok(())

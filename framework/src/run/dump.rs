@@ -8,6 +8,8 @@ use super::Every;
 pub struct Dump {
     pub(super) name: String,
     pub(super) every: Every,
+    /// Whether the state at the end of a run is shown too.
+    pub(super) has_last: bool,
     pub(super) fields: Vec<Field>,
 }
 
@@ -23,7 +25,14 @@ pub(super) struct Field {
 impl Dump {
     /// A series called `name`, which begins its files' names, of no fields.
     pub fn new(name: impl Into<String>, every: Every) -> Self {
-        Self { name: name.into(), every, fields: Vec::new() }
+        Self { name: name.into(), every, has_last: false, fields: Vec::new() }
+    }
+
+    /// Shows the state at the end of the run too, however it comes to an end in order. (A run that is
+    /// stopped and restarted then has a file more than one that was not.)
+    pub fn and_last(mut self) -> Self {
+        self.has_last = true;
+        self
     }
 
     /// Shows the column `name`.

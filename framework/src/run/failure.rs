@@ -10,7 +10,9 @@ use crate::format::FormatError;
 use crate::simulation::{RestoreError, RunError};
 
 /// A run failed, and this is where it can be taken up again.
-#[derive(Debug)]
+///
+/// Shown in words by `Debug` too, with all causes, so that a `main` that returns it says what is
+/// wrong.
 pub struct RunFailed {
     /// Why.
     pub cause: RunFailure,
@@ -26,6 +28,18 @@ impl fmt::Display for RunFailed {
             Some(path) => write!(f, " (last good checkpoint: `{}`)", path.display()),
             None => Ok(()),
         }
+    }
+}
+
+impl fmt::Debug for RunFailed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")?;
+        let mut source = self.source();
+        while let Some(cause) = source {
+            write!(f, ": {cause}")?;
+            source = cause.source();
+        }
+        Ok(())
     }
 }
 
@@ -48,6 +62,28 @@ pub enum RunFailure {
     /// The run cannot go on from the checkpoint.
     #[error(transparent)]
     Restore(#[from] RestoreError),
+    /// The checkpoint is of another scene.
+    #[error("checkpoint `{}` is of another scene: {differences}", path.display())]
+    Scene {
+        /// The checkpoint.
+        path: PathBuf,
+        /// What differs.
+        differences: String,
+    },
+    /// The checkpoint is later than the end of the run.
+    #[error(
+        "checkpoint `{}` is of {reached}, past {end}, the end of the run (both count from the \
+         beginning of time)",
+        path.display()
+    )]
+    PastEnd {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Where it is.
+        reached: String,
+        /// Where the run is to end.
+        end: String,
+    },
     /// A monitor has other columns in the checkpoint.
     #[error(
         "checkpoint `{}` has monitor `{monitor}` with columns {found:?}, the run with {expected:?}",

@@ -21,7 +21,8 @@ pub struct Run<D: Domain> {
     pub(super) simulation: Simulation<D>,
     pub(super) until: Until,
     pub(super) folder: Option<PathBuf>,
-    pub(super) scene_hash: u64,
+    /// What is modelled, in words.
+    pub(super) scene: String,
     pub(super) monitors: Vec<Monitor<D>>,
     /// Of each monitor, its history.
     pub(super) histories: Vec<History>,
@@ -45,6 +46,8 @@ pub(super) struct PlannedDump {
     pub dump: Dump,
     pub geometry: Geometry,
     pub timetable: Timetable,
+    /// Step that was shown last.
+    pub shown: Option<u64>,
 }
 
 pub(super) struct Checkpoints {
@@ -66,7 +69,7 @@ impl<D: Domain> Run<D> {
             simulation,
             until: Until::default(),
             folder: None,
-            scene_hash: 0,
+            scene: String::new(),
             monitors: Vec::new(),
             histories: Vec::new(),
             dumps: Vec::new(),
@@ -128,11 +131,17 @@ impl<D: Domain> Run<D> {
         self
     }
 
-    /// A hash of all that is modelled: a checkpoint of another scene is refused.
+    /// Says what is modelled, a line each for name and value of all that decides it: a checkpoint
+    /// of another scene is refused, with the lines in which it differs.
     #[must_use]
-    pub fn scene_hash(mut self, hash: u64) -> Self {
-        self.scene_hash = hash;
+    pub fn scene(mut self, description: impl Into<String>) -> Self {
+        self.scene = description.into();
         self
+    }
+
+    /// The hash by which checkpoints know their scene.
+    pub(super) fn scene_hash(&self) -> u64 {
+        xxhash_rust::xxh3::xxh3_64(self.scene.as_bytes())
     }
 
     /// Keeps a history of `N` numbers with these `columns`, and writes it to `NAME.csv`.
@@ -209,7 +218,7 @@ impl<D: Viewable> Run<D> {
     pub fn dump(mut self, dump: Dump) -> Self {
         let geometry = self.simulation.domain().geometry();
         let timetable = Timetable::new(dump.every);
-        self.dumps.push(PlannedDump { dump, geometry, timetable });
+        self.dumps.push(PlannedDump { dump, geometry, timetable, shown: None });
         self
     }
 }

@@ -10,6 +10,8 @@ use crate::format::Pvd;
 /// Outputs so far, as a checkpoint holds them; the rows of histories are in blocks of their own.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
+    /// What is modelled, in words.
+    pub scene: String,
     /// Names of the series, and their files.
     pub series: Vec<(String, Pvd)>,
     /// Names of the monitors, and their columns.
@@ -30,6 +32,16 @@ impl Record {
             return Ok(Self::default());
         }
         postcard::from_bytes(bytes).map_err(|source| metadata_error(path, source))
+    }
+
+    /// The lines in which the scene differs from the present `scene`.
+    pub fn differences(&self, scene: &str) -> String {
+        let only = |a: &str, b: &str, where_: &str| -> Vec<String> {
+            let missing = a.lines().filter(|line| b.lines().all(|other| other != *line));
+            missing.map(|line| format!("{line} {where_}")).collect()
+        };
+        let saved = only(&self.scene, scene, "in the checkpoint");
+        [saved, only(scene, &self.scene, "here")].concat().join(", ")
     }
 
     /// The files of series `name`; none if there is no such series.

@@ -13,9 +13,13 @@ impl<D: Domain> Run<D> {
     pub(super) fn resume(&mut self, path: &Path) -> Result<(), RunFailure> {
         let mut reader = CheckpointReader::open(path).map_err(RestoreError::from)?;
         let method = &self.simulation.model().method;
-        reader.require(method, self.scene_hash).map_err(RestoreError::from)?;
+        reader.require_method(method).map_err(RestoreError::from)?;
         let saved = Saved::read(path, &reader)?;
         let mut record = Record::from_bytes(&saved.passenger, path).map_err(RestoreError::from)?;
+        if reader.header().scene_hash != self.scene_hash() {
+            let (path, differences) = (path.to_path_buf(), record.differences(&self.scene));
+            return Err(RunFailure::Scene { path, differences });
+        }
         for history in &mut self.histories {
             restore_history(history, &record, &mut reader, path)?;
         }
@@ -35,6 +39,22 @@ impl<D: Domain> Run<D> {
         self.record = record;
         self.saved_at = Some(clock.step());
         self.last_checkpoint = Some(path.to_path_buf());
+        Ok(())
+    }
+}
+
+impl<D: Domain> Run<D> {
+    /// Makes sure that there is something left to do after the checkpoint `path`.
+    pub(super) fn check_end(&self, path: &Path) -> Result<(), RunFailure> {
+        let (clock, path) = (self.simulation.clock(), path.to_path_buf());
+        if let Some(end) = self.until.steps.filter(|&end| end < clock.step()) {
+            let (reached, end) = (format!("step {}", clock.step()), format!("step {end}"));
+            return Err(RunFailure::PastEnd { path, reached, end });
+        }
+        if let Some(end) = self.until.time.filter(|&end| end < clock.time()) {
+            let (reached, end) = (format!("time {}", clock.time()), format!("time {end}"));
+            return Err(RunFailure::PastEnd { path, reached, end });
+        }
         Ok(())
     }
 }

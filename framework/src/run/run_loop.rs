@@ -90,6 +90,7 @@ impl<D: Domain> Run<D> {
         if let Some(path) = self.restart_from.clone() {
             self.resume(&path)?;
             self.restart_from = None;
+            self.check_end(&path)?;
         }
         self.simulation.end_at(self.until.time);
         let writer = match self.folder.clone() {
@@ -105,7 +106,8 @@ impl<D: Domain> Run<D> {
         let layout = Layout {
             folder,
             views,
-            header: Header { method, scene_hash: self.scene_hash },
+            header: Header { method, scene_hash: self.scene_hash() },
+            scene: self.scene.clone(),
             kept: self.simulation.kept().map(|(name, ..)| name.to_owned()).collect(),
             keep: self.checkpoints.as_ref().map_or(usize::MAX, |checkpoints| checkpoints.keep),
         };
@@ -121,9 +123,12 @@ impl<D: Domain> Run<D> {
         }
         loop {
             self.take_rows(course)?;
-            self.take_dumps(course)?;
+            self.take_dumps(course, false)?;
             let (asked, mut save) = self.requests();
             let stopped = self.stopped(asked, &course.watch)?;
+            if stopped.is_some() {
+                self.take_dumps(course, true)?;
+            }
             if let Some(checkpoints) = &mut self.checkpoints {
                 let clock = self.simulation.clock();
                 save |= checkpoints.timetable.take(clock) && clock.step() > 0;
@@ -172,12 +177,15 @@ impl<D: Domain> Run<D> {
     }
 
     /// Posts the dumps that are due.
-    fn take_dumps(&mut self, course: &mut Course) -> Result<(), RunFailure> {
+    fn take_dumps(&mut self, course: &mut Course, is_last: bool) -> Result<(), RunFailure> {
         let clock = self.simulation.clock();
         for (number, dump) in self.dumps.iter_mut().enumerate() {
-            if dump.timetable.take(clock)
+            let is_due = dump.timetable.take(clock) || (is_last && dump.dump.has_last);
+            if is_due
+                && dump.shown != Some(clock.step())
                 && let Some(writer) = &mut course.writer
             {
+                dump.shown = Some(clock.step());
                 let mut snapshot = writer.snapshot()?;
                 let ids = course.views[number].columns();
                 snapshot.take(clock.step(), clock.time(), self.simulation.columns(), ids);

@@ -17,6 +17,8 @@ pub(super) struct Layout {
     pub folder: PathBuf,
     pub views: Vec<View>,
     pub header: Header,
+    /// What is modelled, in words.
+    pub scene: String,
     /// Names of the columns that a checkpoint's snapshot copies.
     pub kept: Vec<String>,
     /// How many checkpoints are kept.
@@ -97,6 +99,8 @@ impl Store {
         view.save(&path, snapshot)?;
         self.files.push(path);
         let series = &mut self.series[series];
+        // A restarted run may come by a step that has been shown.
+        series.retain(|known| known != file);
         series.push(snapshot.time, file)?;
         Ok(series.save(series_path(&self.layout.folder, view))?)
     }
@@ -148,6 +152,7 @@ impl Store {
             .iter()
             .map(|Log { history, .. }| (history.name().to_owned(), history.columns().to_vec()));
         Record {
+            scene: self.layout.scene.clone(),
             series: names.zip(self.series.iter().cloned()).collect(),
             monitors: monitors.collect(),
             checkpoints: self.checkpoints.clone(),

@@ -21,6 +21,8 @@ pub struct Position {
     begun: bool,
     end_time: Option<f64>,
     points: u64,
+    /// The stages of the step.
+    step: String,
     instruction_sets: Vec<String>,
     /// What [`Domain::save`] gave.
     domain: Vec<u64>,
@@ -62,6 +64,19 @@ pub enum RestoreError {
         /// Points of the checkpoint.
         found: u64,
     },
+    /// The checkpoint is of a model with another step: another integrator, say.
+    #[error(
+        "checkpoint `{}` is of a model that steps by [{found}]; this one steps by [{expected}]",
+        path.display()
+    )]
+    Step {
+        /// The file.
+        path: PathBuf,
+        /// Stages of this model's step.
+        expected: String,
+        /// Stages of the step in the checkpoint.
+        found: String,
+    },
     /// The checkpoint has a column that the model does not have.
     #[error(
         "checkpoint `{}` has a column {column:?}, which the model does not have; its kept columns \
@@ -95,6 +110,7 @@ impl<D: Domain> Simulation<D> {
             begun: self.begun,
             end_time: self.end_time,
             points: self.columns().points() as u64,
+            step: self.model.plan.step.outline(),
             instruction_sets: self.instruction_sets.clone(),
             domain: self.domain().save(),
         }
@@ -146,6 +162,10 @@ impl<D: Domain> Simulation<D> {
         let kept: Vec<_> =
             self.kept().map(|(name, id, kind)| (name.to_owned(), id, kind)).collect();
         self.require_columns(&path(), reader, &kept)?;
+        let step = self.model.plan.step.outline();
+        if position.step != step {
+            return Err(RestoreError::Step { path: path(), expected: step, found: position.step });
+        }
         for (name, id, kind) in &kept {
             let bytes = self.model.columns.bytes_mut(*id);
             let name = column_block(name);

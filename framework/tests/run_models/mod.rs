@@ -67,7 +67,7 @@ pub const SWARM: Case<Cells<f64>> = Case {
 /// A run of `case` that writes to `folder`, without an end.
 pub fn plan<D: Domain>(case: &Case<D>, settings: Settings, folder: &Path) -> Run<D> {
     let simulation = Simulation::new((case.model)(), settings).unwrap();
-    (case.outputs)(Run::new(simulation)).out(folder).scene_hash(7)
+    (case.outputs)(Run::new(simulation)).out(folder).scene("seven")
 }
 
 /// Settings that no result may depend on, different for every `number`.
