@@ -199,7 +199,12 @@ fn a_checkpoint_of_another_scene_or_a_damaged_one_is_refused() {
         .unwrap();
     let path = checkpoint.to_str().unwrap();
     let other = ["run", "taylor-green", "--set", "resolution=18", "--restart", path];
-    assert!(complaint(&other, folder.path()).contains("scene"));
+    let said = complaint(&other, folder.path());
+    assert!(said.contains("resolution = 16 in the checkpoint, resolution = 18 here"), "{said}");
+    let said = complaint(&small(&["--restart", path, "--steps", "3"]), folder.path());
+    assert!(said.contains("step 4, past step 3"), "{said}");
+    let said = complaint(&small(&["--restart", "nowhere.ckpt"]), folder.path());
+    assert!(said.contains("nowhere.ckpt") && said.contains("No such file"), "{said}");
     let mut bytes = std::fs::read(&checkpoint).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;

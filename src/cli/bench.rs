@@ -140,7 +140,8 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
 fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     writeln!(
         out,
-        "\n{:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>13} {:>9}",
+        "\n{:>7} {:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>13} {:>9}",
+        "width/m",
         "particles",
         "workers",
         "s/step (med)",
@@ -156,7 +157,8 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     for row in rows {
         writeln!(
             out,
-            "{:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>13.1} {:>9}",
+            "{:>7} {:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>13.1} {:>9}",
+            row.width,
             row.particles,
             row.workers,
             row.seconds(),

@@ -19,13 +19,14 @@ use super::scene_file::SceneFile;
 
 /// Arguments of `finegrain run`.
 #[derive(Args)]
+#[command(after_help = SCENE_FILE)]
 pub struct RunArguments {
-    /// Name of a built-in scene (see `finegrain scenes`), or a TOML file.
+    /// Name of a built-in scene (see `finegrain scenes`), or a TOML file (see below).
     scene: String,
-    /// Set a parameter of the scene; may be given several times.
+    /// Set a parameter of the scene (see `finegrain scenes`); may be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     settings: Vec<(String, String)>,
-    /// Numerical method.
+    /// Numerical method; the scene's first by default.
     #[arg(long)]
     method: Option<String>,
     /// Number of worker threads; all cores by default.
@@ -34,19 +35,25 @@ pub struct RunArguments {
     /// How workers meet: serial, lockstep, peer-to-peer, fork-join or fixed.
     #[arg(long, default_value_t)]
     schedule: Schedule,
-    /// Scalar type.
+    /// Scalar type [default: f64].
     #[arg(long)]
     precision: Option<Precision>,
-    /// End after so many steps.
+    /// End after so many steps, counted from time 0; without this and --until a scene ends by itself.
     #[arg(long)]
     steps: Option<u64>,
-    /// End at this time, in seconds; the last steps are made shorter to hit it.
-    #[arg(long, value_parser = positive)]
+    /// End at this time, in seconds, counted from time 0; the last steps are made shorter to hit it.
+    #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Folder for dumps, histories, checkpoints and the picture of the final field.
+    /// Folder for dumps, histories, checkpoints and the picture of the final field; files of an
+    /// earlier run in it are overwritten.
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Write a checkpoint every so many steps (needs --out).
+    /// Dump fields for ParaView every so many steps (needs --out); ten times in a run by default. The
+    /// beginning and the end are always shown.
+    #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
+    dump_every: Option<u64>,
+    /// Write OUT/checkpoint-STEP.ckpt every so many steps (needs --out), and keep the last three. One
+    /// is always written at the end, Ctrl-C included.
     #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
     checkpoint_every: Option<u64>,
     /// Go on from this checkpoint; scene, parameters and precision must be those of its run.
@@ -60,6 +67,7 @@ pub struct RunArguments {
 fn setting(text: &str) -> Result<(String, String), String> {
     text.split_once('=')
         .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
+        .filter(|(key, _)| !key.is_empty())
         .ok_or_else(|| format!("{text:?} is not of the form KEY=VALUE"))
 }
 
@@ -89,7 +97,24 @@ struct Line<'a> {
     state_hash: String,
     results: &'a std::collections::BTreeMap<&'static str, f64>,
     errors: &'a std::collections::BTreeMap<&'static str, f64>,
+    notes: &'a [String],
+    files: &'a [PathBuf],
 }
+
+/// The form of a scene file, shown by `--help`.
+const SCENE_FILE: &str = "\
+A scene file is TOML; all but the scene's name may be left out:
+
+    scene = \"cylinder\"
+    method = \"sph\"
+    precision = \"f64\"
+
+    [parameters]
+    resolution = 100
+    kernel = \"quintic-spline\"
+
+What the command line says goes over it. Exit code: 0 when the run ended in order (Ctrl-C
+included), 1 after an error, 2 for wrong arguments, 130 after a second Ctrl-C.";
 
 /// Runs a scene and says what it came to.
 pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
@@ -133,6 +158,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         steps: arguments.steps,
         until: arguments.until,
         out: arguments.out.clone(),
+        dump_every: arguments.dump_every,
         checkpoint_every: arguments.checkpoint_every,
         restart: arguments.restart,
         progress: bar.as_ref().map(|bar| bar.port.clone()),
@@ -140,7 +166,8 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     };
     let workers = orders.settings().workers;
     let points = prepared.points();
-    eprintln!("{}: {points} points, {}, {workers} workers", scene.name, arguments.schedule);
+    let plural = if workers == 1 { "" } else { "s" };
+    eprintln!("{}: {points} points, {}, {workers} worker{plural}", scene.name, arguments.schedule);
     let outcome = prepared.run(orders);
     if let Some(bar) = bar {
         bar.finish();
@@ -171,6 +198,8 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
             state_hash: format!("{:016x}", report.state_hash),
             results: &report.results,
             errors: &report.errors,
+            notes: &report.notes,
+            files: &report.files,
         };
         writeln!(stdout, "{}", serde_json::to_string(&line)?)?;
     }
@@ -200,6 +229,9 @@ fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
     if report.instruction_sets.len() > 1 {
         let sets = report.instruction_sets.join(", then ");
         writeln!(out, "  computed with {sets}: the bits are not those of either alone")?;
+    }
+    for note in &report.notes {
+        writeln!(out, "  note: {note}")?;
     }
     for file in report.files.iter().filter(|f| f.extension().is_some_and(|e| e != "vtu")) {
         writeln!(out, "  wrote {}", file.display())?;

@@ -29,6 +29,16 @@ pub enum Precision {
     F64,
 }
 
+impl Precision {
+    /// Its name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
 /// How a scene is to be run; none of it changes what is modelled.
 #[derive(Default)]
 pub struct Orders {
@@ -42,7 +52,9 @@ pub struct Orders {
     pub until: Option<f64>,
     /// Folder for files; none are written without.
     pub out: Option<PathBuf>,
-    /// Write a checkpoint every so many steps.
+    /// Dump fields every so many steps; ten times by default.
+    pub dump_every: Option<u64>,
+    /// Write a checkpoint every so many steps, besides the one at the end.
     pub checkpoint_every: Option<u64>,
     /// Go on from this checkpoint.
     pub restart: Option<PathBuf>,
@@ -64,10 +76,12 @@ impl Orders {
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// There is no such scene.
-    #[error("no scene {name:?}; there are {known}")]
+    #[error("no scene {name:?}{}; there are {known}", parameter::did_you_mean(near))]
     Unknown {
         /// What was asked for.
         name: String,
+        /// The known name that is nearest, if one is near.
+        near: Option<String>,
         /// What there is.
         known: String,
     },
@@ -158,7 +172,8 @@ impl Scene {
         static ALL: &[Scene] = &SCENES;
         ALL.iter().find(|s| s.name == name).ok_or_else(|| {
             let known: Vec<_> = ALL.iter().map(|s| s.name).collect();
-            SceneError::Unknown { name: name.to_owned(), known: known.join(", ") }
+            let near = parameter::nearest(name, &known);
+            SceneError::Unknown { name: name.to_owned(), near, known: known.join(", ") }
         })
     }
 

@@ -56,12 +56,14 @@ pub enum Value {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
     /// The scene has no such parameter.
-    #[error("scene {scene:?} has no parameter {name:?}; it has {known}")]
+    #[error("scene {scene:?} has no parameter {name:?}{}; it has {known}", did_you_mean(near))]
     Unknown {
         /// The scene.
         scene: &'static str,
         /// What was given.
         name: String,
+        /// The known name that is nearest, if one is near.
+        near: Option<String>,
         /// What there is.
         known: String,
     },
@@ -174,7 +176,13 @@ impl Parameters {
         for (name, text) in settings {
             let parameter = declared.iter().find(|p| p.name == name).ok_or_else(|| {
                 let known: Vec<_> = declared.iter().map(|p| p.name).collect();
-                ParameterError::Unknown { scene, name: name.to_owned(), known: known.join(", ") }
+                let near = nearest(name, &known);
+                ParameterError::Unknown {
+                    scene,
+                    name: name.to_owned(),
+                    near,
+                    known: known.join(", "),
+                }
             })?;
             values.insert(parameter.name, parameter.parse(text)?);
         }
@@ -208,6 +216,18 @@ impl Parameters {
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.0.iter().map(|(&name, value)| (name, value))
     }
+}
+
+/// The known name that somebody who wrote `name` may have meant.
+pub(super) fn nearest(name: &str, known: &[&str]) -> Option<String> {
+    let likeness = |known: &&str| strsim::jaro_winkler(name, known);
+    let best = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+    (likeness(best) > 0.85).then(|| (*best).to_owned())
+}
+
+/// A question to end an error message with, if something is near.
+pub(super) fn did_you_mean(near: &Option<String>) -> String {
+    near.as_ref().map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"))
 }
 
 impl std::fmt::Display for Value {
@@ -247,5 +267,7 @@ mod tests {
         assert!(said(("resolution", "24.6")).contains("a whole number"));
         assert!(said(("kernel", "cubic")).contains("one of gaussian, quintic-spline"));
         assert!(said(("resolutoin", "9")).contains("it has resolution, kernel"));
+        assert!(said(("resolutoin", "9")).contains("did you mean \"resolution\"?"));
+        assert!(!said(("width", "9")).contains("did you mean"));
     }
 }

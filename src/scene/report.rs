@@ -31,6 +31,8 @@ pub struct Report {
     pub results: BTreeMap<&'static str, f64>,
     /// Relative errors where a reference exists for these parameters.
     pub errors: BTreeMap<&'static str, f64>,
+    /// What to know about the results.
+    pub notes: Vec<String>,
     /// Files written.
     pub files: Vec<PathBuf>,
     /// The final field.
@@ -51,6 +53,7 @@ impl Report {
             instruction_sets: summary.instruction_sets.clone(),
             results: BTreeMap::new(),
             errors: BTreeMap::new(),
+            notes: Vec::new(),
             files: summary.files.clone(),
             picture: None,
         }

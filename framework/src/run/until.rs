@@ -34,7 +34,7 @@ impl std::fmt::Display for Stopped {
         f.pad(match self {
             Self::Asked => "stopped on request",
             Self::Criterion => "stop criterion met",
-            Self::Steps => "number of steps done",
+            Self::Steps => "all steps done",
             Self::Time => "end time reached",
             Self::WallClock => "wall-clock limit reached",
         })

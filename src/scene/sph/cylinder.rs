@@ -84,8 +84,8 @@ fn build<T: Real>(
     let sph = Sph::new(&start, &fluid, &physics, &scheme)?;
     let volume = lengths[..scene.dims].iter().product();
     let flow = CylinderFlow { scene, volume, sides: [lengths[0], lengths[1]] };
-    let scene_hash = super::scene_hash("cylinder", parameters, precision);
-    Ok(SphScene { sph, flow, scene_hash })
+    let description = super::description("cylinder", parameters, precision);
+    Ok(SphScene { sph, flow, description })
 }
 
 /// Particles at rest on a whole lattice.
@@ -164,6 +164,9 @@ impl<T: Real> Flow<T> for CylinderFlow {
         let [length, width] = self.sides;
         let is_steady = summary.stopped == Stopped::Criterion;
         let is_square = (length / width - 1.0).abs() < 1e-9;
+        if !is_steady {
+            report.notes.push("not steady: the drag is not that of steady flow".to_owned());
+        }
         let reference = self.scene.reference_drag().filter(|_| is_steady && is_square);
         report.result("drag_k", self.scene.drag(x, length * width), reference);
         report.result("superficial_velocity", x, None);

@@ -100,7 +100,8 @@ trait Flow<T: Real> {
 struct SphScene<T: Real, F> {
     sph: Sph<T>,
     flow: F,
-    scene_hash: u64,
+    /// What is modelled, for checkpoints.
+    description: String,
 }
 
 impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
@@ -109,7 +110,7 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
     }
 
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
-        let Self { sph, flow, scene_hash } = *self;
+        let Self { sph, flow, description } = *self;
         let Sph { model, fields, particle_mass } = sph;
         let points = model.columns.points();
         let settings = orders.settings();
@@ -118,22 +119,23 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
             .map_err(|cause| SceneError::Workers { workers, cause })?;
         let end_time = orders.until.or(orders.steps.is_none().then(|| flow.end_time()));
         let until = Until { steps: orders.steps, time: end_time, wall_clock: None };
-        let mut run = Run::new(simulation).until(until).scene_hash(scene_hash);
+        let mut run = Run::new(simulation).until(until).scene(description);
         run = flow.observe(run, &fields, particle_mass);
         if let Some(out) = orders.out {
             let dims = fields.velocity.len();
             let velocity = &["velocity_x", "velocity_y", "velocity_z"][..dims];
-            let mut dump = Dump::new("fields", Every::Time(0.1 * flow.end_time()))
+            let every = orders.dump_every.map_or(Every::Time(0.1 * flow.end_time()), Every::Steps);
+            let mut dump = Dump::new("fields", every)
+                .and_last()
                 .scalar("identity")
                 .scalar("density")
                 .vector("velocity", velocity.iter().copied());
             if fields.wall_depth.is_some() {
                 dump = dump.scalar("wall_depth");
             }
-            run = run.out(out).dump(dump);
-            if let Some(steps) = orders.checkpoint_every {
-                run = run.checkpoint(Every::Steps(steps), 3);
-            }
+            // One at the end in any case, so that every run can be taken up again.
+            let every = Every::Steps(orders.checkpoint_every.unwrap_or(u64::MAX));
+            run = run.out(out).dump(dump).checkpoint(every, 3);
         }
         if let Some(restart) = orders.restart {
             run = run.restart_from(restart);
@@ -184,8 +186,11 @@ fn picture<T: Real>(
         .window([region.lower[0], region.lower[1]], [region.upper[0], region.upper[1]])
 }
 
-/// Hash of everything that is modelled.
-fn scene_hash(scene: &str, parameters: &Parameters, precision: super::Precision) -> u64 {
-    let text = format!("{scene} sph {precision:?} {parameters:?}");
-    xxhash_rust::xxh3::xxh3_64(text.as_bytes())
+/// Everything that is modelled, a line each, for checkpoints.
+fn description(scene: &str, parameters: &Parameters, precision: super::Precision) -> String {
+    let mut text = format!("scene = {scene}\nmethod = sph\nprecision = {}\n", precision.name());
+    for (name, value) in parameters.iter() {
+        text += &format!("{name} = {value}\n");
+    }
+    text
 }

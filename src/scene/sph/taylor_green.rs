@@ -63,8 +63,8 @@ fn build<T: Real>(
             *density = T::of(1.0 + scene.pressure(x) / fluid.sound_speed.powi(2));
         }
     }
-    let scene_hash = super::scene_hash("taylor-green", parameters, precision);
-    Ok(SphScene { sph, flow: Vortices { scene }, scene_hash })
+    let description = super::description("taylor-green", parameters, precision);
+    Ok(SphScene { sph, flow: Vortices { scene }, description })
 }
 
 struct Vortices {
