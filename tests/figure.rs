@@ -106,7 +106,7 @@ fn lattice(value: impl Fn(f64, f64) -> f64) -> Vec<([f64; 2], f64)> {
 #[test]
 fn a_field_of_points_shows_its_values_to_scale() {
     let wave = lattice(|x, y| x.sin() * y.cos());
-    for mark in [Mark::Disc, Mark::Square] {
+    for mark in [Mark::Disc, Mark::Surface] {
         let field = Field::of_points(wave.clone(), 0.1)
             .title("Wave")
             .quantity(Axis::new("speed").unit("m/s"))
@@ -143,7 +143,7 @@ fn values_that_are_not_finite_are_grey() {
     let some = lattice(|x, _| if x < 1.0 { f64::NAN } else { x });
     let none = lattice(|_, _| f64::INFINITY);
     for (points, least, most) in [(some, 10_000, 200_000), (none, 200_000, 1_000_000)] {
-        let field = Field::of_points(points, 0.1).mark(Mark::Square);
+        let field = Field::of_points(points, 0.1).mark(Mark::Surface);
         let (.., colours) = saved(|path| field.save(path));
         assert!((least..most).contains(&colours[&[170; 3]]), "{}", colours[&[170; 3]]);
     }

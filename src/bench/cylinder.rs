@@ -88,10 +88,14 @@ impl Row {
         self.seconds_per_step.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Speed-up over one worker (eq. 9): median over the samples, each against its own turn's.
+    /// Speed-up over one worker (eq. 9) of every sample, each against its own turn's.
+    pub fn speed_ups(&self) -> Vec<f64> {
+        self.alone.iter().zip(&self.seconds_per_step).map(|(one, many)| one / many).collect()
+    }
+
+    /// Speed-up over one worker: median over the samples.
     pub fn speed_up(&self) -> Option<f64> {
-        let ratios: Vec<f64> =
-            self.alone.iter().zip(&self.seconds_per_step).map(|(one, many)| one / many).collect();
+        let ratios = self.speed_ups();
         (!ratios.is_empty()).then(|| median(&ratios))
     }
 

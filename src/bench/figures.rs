@@ -17,10 +17,11 @@ pub fn draw(out: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, FigureError> {
     let mut pictures = Vec::new();
 
     let path = out.join("fig10-time-per-step.png");
-    let chart = Chart::new("Time per step (Fig. 10)")
+    let chart = Chart::new("Time per step (Fig. 10; medians, bars from best to worst)")
         .x(workers())
-        .y(Axis::new("time per step").unit("s").scale(Scale::Log10));
-    series(chart, rows, |row| Some(row.seconds())).save(&path)?;
+        .y(Axis::new("time per step, log scale").unit("s").scale(Scale::Log10));
+    let own = |row: &Row| row.seconds_per_step.clone();
+    series(chart, rows, |row| Some(row.seconds()), own).save(&path)?;
     pictures.push(path);
 
     if rows.iter().any(|row| row.speed_up().is_some()) {
@@ -29,15 +30,18 @@ pub fn draw(out: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, FigureError> {
             .x(workers())
             .y(Axis::new("speed-up"))
             .reference("ideal", numbers().map(|n| [n, n]));
-        series(chart, rows, |row| ratio(row, 1.0)).save(&path)?;
+        series(chart, rows, |row| ratio(row, 1.0), Row::speed_ups).save(&path)?;
         pictures.push(path);
 
         let path = out.join("fig12-efficiency.png");
         let chart = Chart::new("Parallel efficiency (Fig. 12)")
             .x(workers())
-            .y(Axis::new("efficiency").covering(0.8, 1.05))
+            .y(Axis::new("efficiency").covering(0.0, 1.05))
             .reference("ideal", numbers().map(|n| [n, 1.0]));
-        series(chart, rows, |row| ratio(row, row.workers as f64)).save(&path)?;
+        let efficiencies = |row: &Row| {
+            row.speed_ups().into_iter().map(|ratio| ratio / row.workers as f64).collect()
+        };
+        series(chart, rows, |row| ratio(row, row.workers as f64), efficiencies).save(&path)?;
         pictures.push(path);
     }
     Ok(pictures)
@@ -49,12 +53,23 @@ fn ratio(row: &Row, by: f64) -> Option<f64> {
     Some(speed_up? / by)
 }
 
-/// Adds a line a model size.
-fn series(mut chart: Chart, rows: &[Row], value: impl Fn(&Row) -> Option<f64>) -> Chart {
+/// Adds a line a model size, with bars over all its samples.
+fn series(
+    mut chart: Chart,
+    rows: &[Row],
+    value: impl Fn(&Row) -> Option<f64>,
+    samples: impl Fn(&Row) -> Vec<f64>,
+) -> Chart {
     for group in rows.chunk_by(|a, b| a.width == b.width) {
         let name = format!("{} particles", group[0].particles);
         let points = group.iter().filter_map(|row| Some([row.workers as f64, value(row)?]));
-        chart = chart.series(name, points.collect::<Vec<_>>());
+        let spreads = group.iter().filter_map(|row| {
+            let samples = samples(row);
+            let low = samples.iter().copied().reduce(f64::min)?;
+            let high = samples.iter().copied().reduce(f64::max)?;
+            Some([row.workers as f64, low, high])
+        });
+        chart = chart.series(name, points.collect::<Vec<_>>()).spread(spreads.collect::<Vec<_>>());
     }
     chart
 }

@@ -32,6 +32,15 @@ pub struct Chart {
 struct Line {
     name: String,
     points: Vec<[f64; 2]>,
+    /// Place along x, and the ends along y of what the point there is the middle of.
+    spreads: Vec<[f64; 3]>,
+}
+
+impl Line {
+    fn new(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let points = points.into_iter().collect();
+        Self { name: name.into(), points, spreads: Vec::new() }
+    }
 }
 
 impl Chart {
@@ -72,7 +81,18 @@ impl Chart {
         name: impl Into<String>,
         points: impl IntoIterator<Item = [f64; 2]>,
     ) -> Self {
-        self.series.push(Line { name: name.into(), points: points.into_iter().collect() });
+        self.series.push(Line::new(name, points));
+        self
+    }
+
+    /// Shows, for the series added last, from where to where measurements scatter: at each x a bar
+    /// from y = `low` to `high`, given as `[x, low, high]`.
+    ///
+    /// # Panics
+    /// If there is no series yet.
+    pub fn spread(mut self, spreads: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        let line = self.series.last_mut().expect("a spread is that of a series");
+        line.spreads = spreads.into_iter().collect();
         self
     }
 
@@ -82,7 +102,7 @@ impl Chart {
         name: impl Into<String>,
         points: impl IntoIterator<Item = [f64; 2]>,
     ) -> Self {
-        self.reference = Some(Line { name: name.into(), points: points.into_iter().collect() });
+        self.reference = Some(Line::new(name, points));
         self
     }
 
@@ -109,6 +129,14 @@ impl Chart {
             canvas.dashed(&place(run), 1.8, GREY);
         }
         for (index, line) in self.series.iter().enumerate() {
+            for &[x, low, high] in &line.spreads {
+                let [low, high] = [[x, low], [x, high]];
+                if self.shows(&low) && self.shows(&high) {
+                    draw_spread(&mut canvas, frame.place(low), frame.place(high), index);
+                }
+            }
+        }
+        for (index, line) in self.series.iter().enumerate() {
             for point in self.runs(line).flat_map(place) {
                 marker::draw(&mut canvas, index, point);
             }
@@ -119,12 +147,13 @@ impl Chart {
 
     /// Where the data go; `None` if there are none.
     fn frame(&self, [width, height]: [f64; 2]) -> Option<Frame> {
-        let shown = |[x, y]: &&[f64; 2]| self.x.shows(*x) && self.y.shows(*y);
-        if !self.series.iter().any(|line| line.points.iter().any(|p| shown(&p))) {
+        if !self.series.iter().any(|line| line.points.iter().any(|p| self.shows(p))) {
             return None;
         }
-        let lines = self.series.iter().chain(&self.reference);
-        let points: Vec<_> = lines.flat_map(|line| line.points.iter().filter(shown)).collect();
+        let lines = || self.series.iter().chain(&self.reference);
+        let ends = lines().flat_map(|line| &line.spreads).flat_map(|&[x, a, b]| [[x, a], [x, b]]);
+        let points = lines().flat_map(|line| line.points.iter().copied()).chain(ends);
+        let points: Vec<_> = points.filter(|point| self.shows(point)).collect();
         let (top, bottom) = (Frame::ROOM_ABOVE, height - Frame::ROOM_BELOW);
         let extent = self.y.padded(points.iter().map(|p| p[1]))?;
         let y = Ruler::new(&self.y, extent, ((bottom - top) / 50.0) as usize);
@@ -135,11 +164,13 @@ impl Chart {
         Some(Frame { left, top, right, bottom, x, y })
     }
 
+    fn shows(&self, [x, y]: &[f64; 2]) -> bool {
+        self.x.shows(*x) && self.y.shows(*y)
+    }
+
     /// Stretches of a line's points that all have a place.
     fn runs<'a>(&'a self, line: &'a Line) -> impl Iterator<Item = &'a [[f64; 2]]> {
-        line.points
-            .split(|&[x, y]| !(self.x.shows(x) && self.y.shows(y)))
-            .filter(|run| !run.is_empty())
+        line.points.split(|point| !self.shows(point)).filter(|run| !run.is_empty())
     }
 
     fn room_for_legend(&self) -> f64 {
@@ -170,5 +201,14 @@ impl Chart {
             canvas.dashed(&sample(y), 1.8, GREY);
             name(canvas, &line.name, y);
         }
+    }
+}
+
+/// A bar from `low` to `high` with ends, in pixels.
+fn draw_spread(canvas: &mut Canvas, low: [f64; 2], high: [f64; 2], index: usize) {
+    let colour = marker::colour(index);
+    canvas.line(&[low, high], 1.4, colour);
+    for [x, y] in [low, high] {
+        canvas.line(&[[x - 5.0, y], [x + 5.0, y]], 1.4, colour);
     }
 }

@@ -6,6 +6,7 @@ use super::axis::Axis;
 use super::canvas::{Align, BLACK, Canvas, Colour, WHITE, text_width};
 use super::error::FigureError;
 use super::frame::{Frame, MEDIUM, SMALL, widest};
+use super::nearest::Nearest;
 use super::outline::Outline;
 use super::ruler::Ruler;
 use super::viridis::viridis;
@@ -22,9 +23,10 @@ const SHORTEST_BAR: f64 = 200.0;
 pub enum Mark {
     /// As a filled disc: shows where every particle is, and the gaps between them.
     Disc,
-    /// As a filled square: an even surface where points lie a diameter apart.
+    /// As the part of space that is nearest to it, up to 0.8 diameters away: an even surface where
+    /// points lie about a diameter apart, with holes where there are none.
     #[default]
-    Square,
+    Surface,
 }
 
 /// A picture of a field: its value by colour, space to scale.
@@ -102,7 +104,7 @@ impl Field {
         self
     }
 
-    /// How points are drawn; as squares by default.
+    /// How points are drawn; as a surface by default.
     pub fn mark(mut self, mark: Mark) -> Self {
         self.mark = mark;
         self
@@ -240,21 +242,24 @@ impl Field {
         match &self.content {
             Content::Points { points, diameter } => {
                 let [a, b] = [0.0, *diameter].map(|x| frame.place([x, 0.0])[0]);
-                let radius = (b - a) / 2.0;
-                for &(position, value) in points {
-                    let centre = frame.place(position);
-                    let is_near = centre[0] > frame.left - radius
-                        && centre[0] < frame.right + radius
-                        && centre[1] > frame.top - radius
-                        && centre[1] < frame.bottom + radius;
-                    match self.mark {
-                        _ if !is_near => {}
-                        Mark::Disc => canvas.disc(centre, radius, colour(value)),
-                        Mark::Square => canvas.rectangle(
-                            centre.map(|c| c - radius),
-                            centre.map(|c| c + radius),
-                            colour(value),
-                        ),
+                let pixels = b - a;
+                let points: Vec<_> = points
+                    .iter()
+                    .map(|&(position, value)| (frame.place(position), value))
+                    .filter(|(centre, _)| frame.holds(*centre, pixels))
+                    .collect();
+                match self.mark {
+                    Mark::Disc => {
+                        for &(centre, value) in &points {
+                            canvas.disc(centre, pixels / 2.0, colour(value));
+                        }
+                    }
+                    Mark::Surface => {
+                        let nearest = Nearest::new(&points, 0.8 * pixels);
+                        let Frame { left, top, right, bottom, .. } = *frame;
+                        canvas.paint([left, top], [right, bottom], |pixel| {
+                            nearest.value_at(pixel).map(&colour)
+                        });
                     }
                 }
             }

@@ -42,6 +42,14 @@ impl Frame {
         ]
     }
 
+    /// Whether a pixel is within the frame or no further than `margin` pixels out of it.
+    pub fn holds(&self, [x, y]: [f64; 2], margin: f64) -> bool {
+        x > self.left - margin
+            && x < self.right + margin
+            && y > self.top - margin
+            && y < self.bottom + margin
+    }
+
     /// Lines across the frame at the ticks.
     pub fn draw_grid(&self, canvas: &mut Canvas) {
         for tick in &self.x.ticks {

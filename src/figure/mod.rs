@@ -26,6 +26,7 @@ mod error;
 mod field;
 mod frame;
 mod marker;
+mod nearest;
 mod number;
 mod outline;
 mod ruler;

@@ -18,12 +18,15 @@ pub(crate) enum Piece<T: Real> {
     Update(Update<T>),
 }
 
+/// Makes a stage from the columns of a model.
+pub(crate) type MakeStage<T> = Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>;
+
 /// An update of a particle's own quantities.
 pub(crate) struct Update<T: Real> {
     pub reads: Vec<Quantity>,
     pub writes: Vec<Quantity>,
     /// Makes its stage once the columns are known.
-    pub stage: Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>,
+    pub stage: MakeStage<T>,
 }
 
 impl<T: Real> Piece<T> {
