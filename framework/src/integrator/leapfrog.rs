@@ -17,7 +17,7 @@ use crate::step::{Stage, Step};
 /// without motion (density, energy). So that the step stays of second order, the evaluation at
 /// t_{n+1} sees them predicted, `y* = y_n + dt y'_n`, and the second kick then corrects:
 /// `y_{n+1} = y* + dt/2 (y'_{n+1} - y'_n)` (as Price et al. 2018, PASA 35, e031, section 2.3.4,
-/// without their iteration). Where rates do not depend on `v` this is the above, exactly.
+/// without their iteration). Decay, `y' = -k y`, is stable for `k dt` up to 1. Where rates do not depend on `v` this is the above, exactly.
 pub(super) fn leapfrog<D: Domain>(
     columns: &mut Columns,
     evolution: &Evolution,

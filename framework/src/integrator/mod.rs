@@ -75,7 +75,8 @@ pub enum Integrator {
     Euler,
     /// Symplectic (semi-implicit) Euler: first order, keeps the energy of oscillations bounded.
     SymplecticEuler,
-    /// Leapfrog in kick-drift-kick form: second order, one evaluation a step.
+    /// Leapfrog in kick-drift-kick form: second order, one evaluation a step. For motion; on pure
+    /// decay, `y' = -k y`, it is stable only for `k dt` up to 1.
     Leapfrog,
     /// Runge-Kutta midpoint: second order.
     Rk2,

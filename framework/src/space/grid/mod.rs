@@ -11,6 +11,12 @@ use crate::viewable::{Geometry, Viewable};
 ///
 /// Point (i, j, k) is number `(k ny + j) nx + i`. A tile is a block of whole rows; its neighbours
 /// are the tiles that own a row within the stencil's reach, corners included.
+///
+/// Rows are whole: a 1-D grid is one row and so one sub-domain, which one worker steps. To have it
+/// in parallel, lay it out in 2-D.
+///
+/// [`Rows`] wraps j and k in periodic directions; along x, within a row, a stage wraps by itself.
+/// Beyond a wall there is no row: [`Rows::get`] gives `None`, [`Rows::row`] panics.
 #[derive(Debug)]
 pub struct Grid {
     shape: [usize; 3],
