@@ -36,6 +36,21 @@ pub struct Fields<T> {
     /// `mu epsilon / rho^2`, the components xx, (xy, yy, (xz, yz, zz)); only with the viscosity in
     /// strain-rate form.
     pub stress_term: Vec<Rate<T>>,
+    /// Sums of density differences over the kernel gradient, kg/m^4; only with density diffusion
+    /// that knows the gradient.
+    pub density_slope: Vec<Rate<T>>,
+    /// Gradient of the density of the present evaluation, kg/m^4; as above.
+    pub density_gradient: Vec<State<T>>,
+    /// Moment matrix of the neighbours, the components xx, (xy, yy, (xz, yz, zz)); only with terms
+    /// that correct the kernel gradient or know the free surface.
+    pub moment: Vec<Rate<T>>,
+    /// Inverse of the moment matrix; only with terms that correct the kernel gradient.
+    pub correction: Vec<State<T>>,
+    /// Smallest eigenvalue of the moment matrix: 1 in the fluid, less at a free surface; only with
+    /// terms that know the free surface.
+    pub fullness: Option<State<T>>,
+    /// Velocity of particles besides that of the fluid, m/s; only with shifting.
+    pub drift: Vec<Rate<T>>,
 }
 
 /// Where a quantity is stored.
@@ -56,6 +71,12 @@ impl<T: Real> Fields<T> {
         let used = |quantity: Quantity| uses.contains(&quantity);
         let directions = &DIRECTIONS[..dims];
         let name = |what: &str, direction: &str| format!("{what}_{direction}");
+        let vector = |component: fn(usize) -> Quantity| {
+            Quantity::vector(component, dims).filter(|&q| used(q)).zip(directions)
+        };
+        let symmetric = |component: fn(usize) -> Quantity| {
+            Quantity::symmetric(component, dims).filter(|&q| used(q)).enumerate()
+        };
         Self {
             position: directions.iter().map(|d| columns.state(&name("position", d))).collect(),
             velocity: directions.iter().map(|d| columns.state(&name("velocity", d))).collect(),
@@ -76,6 +97,22 @@ impl<T: Real> Fields<T> {
                 .enumerate()
                 .map(|(k, _)| columns.rate(&format!("stress_term_{k}")))
                 .collect(),
+            density_slope: vector(Quantity::DensitySlope)
+                .map(|(_, d)| columns.rate(&name("density_slope", d)))
+                .collect(),
+            density_gradient: vector(Quantity::DensityGradient)
+                .map(|(_, d)| columns.register(&name("density_gradient", d)))
+                .collect(),
+            moment: symmetric(Quantity::Moment)
+                .map(|(k, _)| columns.rate(&format!("moment_{k}")))
+                .collect(),
+            correction: symmetric(Quantity::Correction)
+                .map(|(k, _)| columns.register(&format!("correction_{k}")))
+                .collect(),
+            fullness: used(Quantity::Fullness).then(|| columns.register("fullness")),
+            drift: vector(Quantity::Drift)
+                .map(|(_, d)| columns.rate(&name("drift", d)))
+                .collect(),
         }
     }
 
@@ -90,6 +127,13 @@ impl<T: Real> Fields<T> {
             Quantity::Acceleration(a) => Some(Column::Rate(self.acceleration[a])),
             Quantity::DensityRate => Some(Column::Rate(self.density_rate)),
             Quantity::EnergyRate => self.energy_rate.map(Column::Rate),
+            Quantity::Density => Some(Column::State(self.density)),
+            Quantity::DensitySlope(a) => self.density_slope.get(a).copied().map(Column::Rate),
+            Quantity::DensityGradient(a) => self.density_gradient.get(a).copied().map(Column::State),
+            Quantity::Moment(k) => self.moment.get(k).copied().map(Column::Rate),
+            Quantity::Correction(k) => self.correction.get(k).copied().map(Column::State),
+            Quantity::Fullness => self.fullness.map(Column::State),
+            Quantity::Drift(a) => self.drift.get(a).copied().map(Column::Rate),
         }
     }
 

@@ -51,6 +51,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod acceleration;
 pub mod dimension;
 pub mod error;
 pub mod fields;
@@ -60,9 +61,11 @@ pub mod model;
 pub mod packing;
 pub mod physics;
 pub mod scheme;
+pub mod stabilisation;
 pub mod start;
 pub mod state_equation;
 
+mod correction;
 mod evaluation;
 mod neighbourhood;
 mod pacing;
@@ -71,6 +74,7 @@ mod sweep;
 mod term;
 mod wall;
 
+pub use acceleration::AccelerationField;
 pub use dimension::Dimension;
 pub use error::SphError;
 pub use fields::Fields;
@@ -79,5 +83,6 @@ pub use model::Sph;
 pub use packing::{Lattice, Packing};
 pub use physics::{Fluid, Physics, Viscosity};
 pub use scheme::Scheme;
+pub use stabilisation::{ArtificialViscosity, DensityDiffusion, DiffusionForm, Stabilisation};
 pub use start::Start;
 pub use state_equation::StateEquation;

@@ -96,7 +96,15 @@ fn build<T: Real, const D: usize>(
     let smoothing_length = scheme.smoothing_ratio * start.spacing;
     let kernel = Kernel::new(scheme.kernel, dimension, T::of(smoothing_length));
     let particle_mass = fluid.density * start.particle_volume;
-    let pieces = pieces::<T>(fluid, physics, smoothing_length, particle_mass);
+    let mut pieces = pieces::<T>(fluid, physics, smoothing_length, particle_mass);
+    pieces.extend(scheme.stabilisation.pieces(
+        fluid,
+        physics,
+        &kernel,
+        start.spacing,
+        particle_mass,
+        D,
+    ));
     let range = kernel.support_radius().as_f64();
     let walls = Walls::new(&physics.bodies, &start.region, range);
 
@@ -134,6 +142,7 @@ fn build<T: Real, const D: usize>(
                 terms,
                 &fields,
                 body_acceleration,
+                physics.acceleration_field.as_ref(),
                 no_slip.as_ref(),
             )));
         }
@@ -148,6 +157,10 @@ fn build<T: Real, const D: usize>(
         evolution = evolution
             .with_motion(fields.position[a], fields.velocity[a])
             .with(fields.velocity[a], fields.acceleration[a]);
+        if let Some(&drift) = fields.drift.get(a) {
+            columns.keep(drift.id());
+            evolution = evolution.with_drift(fields.position[a], drift);
+        }
     }
     if let (Some(energy), Some(rate)) = (fields.energy, fields.energy_rate) {
         evolution = evolution.with(energy, rate);

@@ -334,6 +334,14 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
             .then(|| self.values(Quantity::WallDepth))
     }
 
+    /// Sets the weights of neighbours in bodies to 0.
+    #[inline(always)]
+    pub fn leave_out_bodies(&self, weight: &mut [T]) {
+        for (weight, &depth) in weight.iter_mut().zip(self.wall_depth().into_iter().flatten()) {
+            *weight = if depth > T::zero() { T::zero() } else { *weight };
+        }
+    }
+
     /// A gathered quantity of the neighbours.
     #[inline(always)]
     pub fn values(&self, quantity: Quantity) -> &[T] {

@@ -3,6 +3,7 @@
 use finegrain_framework::shape::Shape;
 use serde::{Deserialize, Serialize};
 
+use crate::acceleration::AccelerationField;
 use crate::error::{SphError, finite, not_negative, positive};
 use crate::state_equation::StateEquation;
 
@@ -36,6 +37,8 @@ pub struct Physics {
     pub energy: bool,
     /// Constant acceleration of the fluid, m/s^2; zero if none.
     pub body_acceleration: [f64; 3],
+    /// Acceleration of the fluid that varies, besides.
+    pub acceleration_field: Option<AccelerationField>,
     /// Bodies, filled with particles at rest and without slip.
     pub bodies: Vec<Shape>,
 }

@@ -16,11 +16,24 @@ pub(crate) enum Quantity {
     Acceleration(usize),
     DensityRate,
     EnergyRate,
+    Density,
+    /// Sums of density differences over the gradient, before the correction.
+    DensitySlope(usize),
+    /// Corrected gradient of the density.
+    DensityGradient(usize),
+    /// Moment matrix of the neighbours.
+    Moment(usize),
+    /// Inverse of the moment matrix.
+    Correction(usize),
+    /// Smallest eigenvalue of the moment matrix: 1 in the fluid, less at a free surface.
+    Fullness,
+    /// Velocity of a particle besides that of the fluid.
+    Drift(usize),
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 17;
+    pub const COUNT: usize = 40;
 
     /// Its place among all.
     #[inline(always)]
@@ -34,6 +47,13 @@ impl Quantity {
             Self::Acceleration(a) => 12 + a,
             Self::DensityRate => 15,
             Self::EnergyRate => 16,
+            Self::Density => 17,
+            Self::DensitySlope(a) => 18 + a,
+            Self::DensityGradient(a) => 21 + a,
+            Self::Moment(k) => 24 + k,
+            Self::Correction(k) => 30 + k,
+            Self::Fullness => 36,
+            Self::Drift(a) => 37 + a,
         }
     }
 

@@ -4,6 +4,7 @@ use finegrain_framework::Integrator;
 
 use crate::error::{SphError, positive};
 use crate::kernel::SmoothingFunction;
+use crate::stabilisation::Stabilisation;
 
 /// How it is discretised.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Scheme {
     pub skin: f64,
     /// Largest extrapolation of the velocity into bodies, `beta_max` of Morris et al. (1997).
     pub beta_max: f64,
+    /// What takes out noise and keeps particles regular.
+    pub stabilisation: Stabilisation,
 }
 
 impl Default for Scheme {
@@ -32,6 +35,7 @@ impl Default for Scheme {
             courant_number: 1.0,
             skin: 0.2,
             beta_max: 1.5,
+            stabilisation: Stabilisation::default(),
         }
     }
 }
@@ -41,6 +45,7 @@ impl Scheme {
         positive("smoothing_ratio", self.smoothing_ratio)?;
         positive("courant_number", self.courant_number)?;
         positive("skin", self.skin)?;
-        positive("beta_max", self.beta_max)
+        positive("beta_max", self.beta_max)?;
+        self.stabilisation.check()
     }
 }

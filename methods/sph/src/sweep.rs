@@ -7,6 +7,7 @@ use finegrain_framework::{
     ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real,
 };
 
+use crate::acceleration::AccelerationField;
 use crate::fields::Fields;
 use crate::kernel::Kernel;
 use crate::neighbourhood::{Candidates, Gathered, Neighbours, Particle};
@@ -24,6 +25,8 @@ pub(crate) struct Sweep<T, const D: usize> {
     outputs: Vec<(Quantity, Rate<T>)>,
     /// Acceleration of the fluid by a body force, m/s^2.
     body_acceleration: [T; D],
+    /// The part of it that varies; only if accelerations are summed up.
+    acceleration_field: Option<AccelerationField>,
     /// Only if a term sees velocities in bodies.
     no_slip: Option<NoSlip<T>>,
 }
@@ -35,12 +38,14 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         terms: Vec<AnyTerm<T>>,
         fields: &Fields<T>,
         body_acceleration: [T; D],
+        acceleration_field: Option<&AccelerationField>,
         no_slip: Option<&NoSlip<T>>,
     ) -> Self {
         let reads = terms.iter().flat_map(|term| term.reads(D)).chain([Quantity::WallDepth]);
         let mut writes: Vec<_> = terms.iter().flat_map(|term| term.writes(D)).collect();
         writes.sort_unstable();
         writes.dedup();
+        let accelerates = writes.contains(&Quantity::Acceleration(0));
         let outputs = writes.into_iter().filter_map(|q| Some((q, fields.rate(q)?))).collect();
         // Named after what it sums up, for error messages.
         let names: Vec<_> = terms.iter().map(AnyTerm::name).collect();
@@ -53,6 +58,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
             terms,
             outputs,
             body_acceleration,
+            acceleration_field: acceleration_field.filter(|_| accelerates).cloned(),
             no_slip: no_slip.filter(|_| extrapolates).cloned(),
         }
     }
@@ -65,6 +71,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         block: &CellBlock<'_, T>,
         written: &mut Written<'_, T>,
         scratch: &mut Scratch<T, D>,
+        time: f64,
     ) {
         let Scratch { candidates, neighbours, work } = scratch;
         let first = near.spans()[0].start;
@@ -74,7 +81,12 @@ impl<T: Real, const D: usize> Sweep<T, D> {
                 let mut particle = candidates.particle(&self.gathered, k);
                 particle.no_slip = self.no_slip(&particle);
                 neighbours.gather(&self.gathered, candidates, &particle, &self.kernel);
-                let sums = self.sum(&particle, neighbours, work);
+                let mut sums = self.sum(&particle, neighbours, work);
+                if let Some(field) = &self.acceleration_field
+                    && !particle.is_wall()
+                {
+                    sums.add(Quantity::Acceleration, field.at(particle.position, time));
+                }
                 for (column, &(quantity, _)) in written.iter_mut().zip(&self.outputs) {
                     column[cell.span.start - first + k] = sums[quantity];
                 }
@@ -134,6 +146,7 @@ struct Task<'s, 'n, T: Real, const D: usize> {
     block: &'s CellBlock<'n, T>,
     written: &'s mut Written<'n, T>,
     scratch: &'s mut Scratch<T, D>,
+    time: f64,
 }
 
 impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
@@ -141,7 +154,7 @@ impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.sweep.run(self.near, self.block, self.written, self.scratch);
+        self.sweep.run(self.near, self.block, self.written, self.scratch, self.time);
     }
 }
 
@@ -161,7 +174,7 @@ impl<T: Real, const D: usize> RateStage<Cells<T>> for Sweep<T, D> {
         near: &Near<'_, Cells<T>>,
         rates: &mut Rates<'_, Cells<T>>,
         scratch: &mut Self::Scratch,
-        _: &Moment,
+        moment: &Moment,
     ) -> Result<(), Fault> {
         let block = near.domain().sub_domain(near.id());
         let mut written: Written<'_, T> = std::array::from_fn(|_| &mut [][..]);
@@ -174,6 +187,7 @@ impl<T: Real, const D: usize> RateStage<Cells<T>> for Sweep<T, D> {
             block: &block,
             written: &mut written,
             scratch,
+            time: moment.stage_time,
         });
         Ok(())
     }

@@ -3,10 +3,16 @@
 //! A term is a sum over the neighbours of a particle. It reads gathered lanes and adds to the
 //! particle's sums; the files read like their equations.
 
+pub(crate) mod artificial_pressure;
+pub(crate) mod artificial_viscosity;
 pub(crate) mod continuity;
+pub(crate) mod density_diffusion;
 pub(crate) mod energy;
+pub(crate) mod moment;
 pub(crate) mod momentum;
+pub(crate) mod shifting;
 pub(crate) mod strain_rate;
+pub(crate) mod tensile_control;
 pub(crate) mod viscosity;
 
 use finegrain_framework::Real;
@@ -14,10 +20,16 @@ use finegrain_framework::Real;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 
+use artificial_pressure::ArtificialPressure;
+use artificial_viscosity::ArtificialViscosity;
 use continuity::Continuity;
+use density_diffusion::DensityDiffusion;
 use energy::Energy;
+use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
+use shifting::Shifting;
 use strain_rate::StrainRate;
+use tensile_control::TensileControl;
 use viscosity::MorrisViscosity;
 
 /// One piece of physics: a sum over neighbours.
@@ -116,7 +128,21 @@ macro_rules! terms {
     };
 }
 
-terms!(Continuity, StrainRate, PressureGradient, StressDivergence, MorrisViscosity, Energy);
+terms!(
+    Continuity,
+    StrainRate,
+    PressureGradient,
+    StressDivergence,
+    MorrisViscosity,
+    Energy,
+    MomentMatrix,
+    DensitySlope,
+    DensityDiffusion,
+    ArtificialViscosity,
+    ArtificialPressure,
+    TensileControl,
+    Shifting,
+);
 
 /// Lanes that a term works with: a weight for each neighbour.
 #[derive(Clone, Debug, Default)]
