@@ -21,6 +21,9 @@ pub struct Fields<T> {
     /// Depth below the surface of a body, m, for the particles that fill it; 0 in the fluid. Only
     /// where there are bodies.
     pub wall_depth: Option<State<T>>,
+    /// Velocity with which the surface of a body slides along itself, m/s, for the particles that
+    /// fill it; only where there are such bodies.
+    pub surface_velocity: Vec<State<T>>,
     /// Number that a particle keeps for life, while its place in memory changes.
     pub identity: State<u32>,
     /// Volume `m / rho`, m^3 (m^2 in 2-D, m in 1-D), of the present evaluation.
@@ -36,6 +39,10 @@ pub struct Fields<T> {
     /// `mu epsilon / rho^2`, the components xx, (xy, yy, (xz, yz, zz)); only with the viscosity in
     /// strain-rate form.
     pub stress_term: Vec<Rate<T>>,
+    /// Velocity that friction sees in bodies, m/s; only where it is extrapolated from the fluid.
+    pub mirrored_velocity: Vec<Rate<T>>,
+    /// Pressure that bodies take from the fluid, Pa; only where it is extrapolated.
+    pub wall_pressure: Option<Rate<T>>,
 }
 
 /// Where a quantity is stored.
@@ -55,6 +62,9 @@ impl<T: Real> Fields<T> {
     ) -> Self {
         let used = |quantity: Quantity| uses.contains(&quantity);
         let directions = &DIRECTIONS[..dims];
+        let vector = |component: fn(usize) -> Quantity| {
+            directions.iter().enumerate().filter(move |&(a, _)| used(component(a))).map(|(_, d)| d)
+        };
         let name = |what: &str, direction: &str| format!("{what}_{direction}");
         Self {
             position: directions.iter().map(|d| columns.state(&name("position", d))).collect(),
@@ -62,6 +72,9 @@ impl<T: Real> Fields<T> {
             density: columns.state("density"),
             energy: used(Quantity::EnergyRate).then(|| columns.state("energy")),
             wall_depth: has_bodies.then(|| columns.state("wall_depth")),
+            surface_velocity: vector(Quantity::SurfaceVelocity)
+                .map(|d| columns.state(&name("surface_velocity", d)))
+                .collect(),
             identity: columns.state("identity"),
             volume: columns.register("volume"),
             pressure_term: columns.register("pressure_term"),
@@ -76,6 +89,10 @@ impl<T: Real> Fields<T> {
                 .enumerate()
                 .map(|(k, _)| columns.rate(&format!("stress_term_{k}")))
                 .collect(),
+            mirrored_velocity: vector(Quantity::MirroredVelocity)
+                .map(|d| columns.rate(&name("mirrored_velocity", d)))
+                .collect(),
+            wall_pressure: used(Quantity::WallPressure).then(|| columns.rate("wall_pressure")),
         }
     }
 
@@ -90,6 +107,13 @@ impl<T: Real> Fields<T> {
             Quantity::Acceleration(a) => Some(Column::Rate(self.acceleration[a])),
             Quantity::DensityRate => Some(Column::Rate(self.density_rate)),
             Quantity::EnergyRate => self.energy_rate.map(Column::Rate),
+            Quantity::SurfaceVelocity(a) => {
+                self.surface_velocity.get(a).copied().map(Column::State)
+            }
+            Quantity::MirroredVelocity(a) => {
+                self.mirrored_velocity.get(a).copied().map(Column::Rate)
+            }
+            Quantity::WallPressure => self.wall_pressure.map(Column::Rate),
         }
     }
 

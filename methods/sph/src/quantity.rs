@@ -16,11 +16,17 @@ pub(crate) enum Quantity {
     Acceleration(usize),
     DensityRate,
     EnergyRate,
+    /// Velocity with which the surface of a body slides along itself; 0 in the fluid.
+    SurfaceVelocity(usize),
+    /// Velocity that friction sees in a body; 0 in the fluid.
+    MirroredVelocity(usize),
+    /// Pressure of the fluid, continued into bodies; 0 in the fluid.
+    WallPressure,
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 17;
+    pub const COUNT: usize = 24;
 
     /// Its place among all.
     #[inline(always)]
@@ -34,6 +40,9 @@ impl Quantity {
             Self::Acceleration(a) => 12 + a,
             Self::DensityRate => 15,
             Self::EnergyRate => 16,
+            Self::SurfaceVelocity(a) => 17 + a,
+            Self::MirroredVelocity(a) => 20 + a,
+            Self::WallPressure => 23,
         }
     }
 

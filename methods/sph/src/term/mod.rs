@@ -8,6 +8,8 @@ pub(crate) mod energy;
 pub(crate) mod momentum;
 pub(crate) mod strain_rate;
 pub(crate) mod viscosity;
+pub(crate) mod wall_pressure;
+pub(crate) mod wall_velocity;
 
 use finegrain_framework::Real;
 
@@ -19,6 +21,8 @@ use energy::Energy;
 use momentum::{PressureGradient, StressDivergence};
 use strain_rate::StrainRate;
 use viscosity::MorrisViscosity;
+use wall_pressure::WallPressure;
+use wall_velocity::MirroredVelocity;
 
 /// One piece of physics: a sum over neighbours.
 pub(crate) trait Term<T: Real> {
@@ -35,6 +39,11 @@ pub(crate) trait Term<T: Real> {
 
     /// Whether velocities in bodies matter to it, which the no-slip condition extrapolates.
     fn sees_velocity_in_bodies(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a sum for the particles of bodies, and not for those of the fluid.
+    fn acts_on_bodies(&self) -> bool {
         false
     }
 
@@ -100,6 +109,12 @@ macro_rules! terms {
                 }
             }
 
+            fn acts_on_bodies(&self) -> bool {
+                match self {
+                    $(Self::$Name(term) => Term::<T>::acts_on_bodies(term),)*
+                }
+            }
+
             #[inline(always)]
             fn add<const D: usize>(
                 &self,
@@ -116,7 +131,16 @@ macro_rules! terms {
     };
 }
 
-terms!(Continuity, StrainRate, PressureGradient, StressDivergence, MorrisViscosity, Energy);
+terms!(
+    Continuity,
+    StrainRate,
+    PressureGradient,
+    StressDivergence,
+    MorrisViscosity,
+    Energy,
+    MirroredVelocity,
+    WallPressure,
+);
 
 /// Lanes that a term works with: a weight for each neighbour.
 #[derive(Clone, Debug, Default)]
