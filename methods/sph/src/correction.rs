@@ -32,6 +32,7 @@ impl<T: Real> Correction<T> {
         Piece::Update(Update {
             reads: moments.chain(slopes).collect(),
             writes: writes.filter(|q| wanted.contains(q)).collect(),
+            amends: false,
             stage: Box::new(|fields| Stage::update(Self { fields: fields.clone() })),
         })
     }

@@ -51,7 +51,9 @@ impl StateEquation {
     pub fn density<T: Real>(&self, pressure: T, reference_density: T, sound_speed: T) -> T {
         let ratio = pressure / (sound_speed * sound_speed * reference_density);
         match *self {
-            Self::Linear { background } => reference_density * (ratio + T::one() - T::of(background)),
+            Self::Linear { background } => {
+                reference_density * (ratio + T::one() - T::of(background))
+            }
             Self::Tait { exponent, background } => {
                 let power = T::of(exponent) * (ratio - T::of(background)) + T::one();
                 reference_density * power.powf(T::of(1.0 / exponent))
@@ -95,6 +97,7 @@ impl<T: Real> Thermodynamics<T> {
         Piece::Update(Update {
             reads: Vec::new(),
             writes: vec![Quantity::Volume, Quantity::PressureTerm],
+            amends: false,
             stage: Box::new(move |fields| {
                 Stage::update(Self {
                     fields: fields.clone(),

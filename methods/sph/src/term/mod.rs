@@ -14,6 +14,8 @@ pub(crate) mod shifting;
 pub(crate) mod strain_rate;
 pub(crate) mod tensile_control;
 pub(crate) mod viscosity;
+pub(crate) mod wall_pressure;
+pub(crate) mod wall_velocity;
 
 use finegrain_framework::Real;
 
@@ -31,6 +33,8 @@ use shifting::Shifting;
 use strain_rate::StrainRate;
 use tensile_control::TensileControl;
 use viscosity::MorrisViscosity;
+use wall_pressure::WallPressure;
+use wall_velocity::MirroredVelocity;
 
 /// One piece of physics: a sum over neighbours.
 pub(crate) trait Term<T: Real> {
@@ -47,6 +51,11 @@ pub(crate) trait Term<T: Real> {
 
     /// Whether velocities in bodies matter to it, which the no-slip condition extrapolates.
     fn sees_velocity_in_bodies(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a sum for the particles of bodies, and not for those of the fluid.
+    fn acts_on_bodies(&self) -> bool {
         false
     }
 
@@ -112,6 +121,12 @@ macro_rules! terms {
                 }
             }
 
+            fn acts_on_bodies(&self) -> bool {
+                match self {
+                    $(Self::$Name(term) => Term::<T>::acts_on_bodies(term),)*
+                }
+            }
+
             #[inline(always)]
             fn add<const D: usize>(
                 &self,
@@ -135,6 +150,8 @@ terms!(
     StressDivergence,
     MorrisViscosity,
     Energy,
+    MirroredVelocity,
+    WallPressure,
     MomentMatrix,
     DensitySlope,
     DensityDiffusion,
