@@ -141,7 +141,7 @@ fn model<T: Real>(width: f64, viscosity: Viscosity) -> Result<Sph<T>, SceneError
     let physics = Physics {
         viscosity: Some(viscosity),
         body_acceleration: [1e-5, 0.0, 0.0],
-        bodies: vec![body],
+        bodies: vec![body.into()],
         ..Physics::default()
     };
     Ok(Sph::new(&start(3, &lattice, SPACING), &fluid, &physics, &Scheme::default())?)

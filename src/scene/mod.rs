@@ -4,8 +4,10 @@
 //! takes part is in a folder of the method's.
 
 pub mod cylinder;
+pub mod drop;
 pub mod parameter;
 pub mod report;
+pub mod rotating_patch;
 pub mod sph;
 pub mod taylor_green;
 
@@ -146,7 +148,7 @@ pub struct Scene {
 }
 
 /// All scenes.
-pub const SCENES: [Scene; 2] = [
+pub const SCENES: [Scene; 5] = [
     Scene {
         name: "cylinder",
         summary: "creeping flow through a square array of cylinders (Morris et al. 1997; 3-D as Holmes et al. 2011)",
@@ -160,6 +162,27 @@ pub const SCENES: [Scene; 2] = [
         methods: &["sph"],
         parameters: sph::taylor_green::parameters,
         prepare: sph::taylor_green::prepare,
+    },
+    Scene {
+        name: "elliptic-drop",
+        summary: "a round drop drawn out by its own motion (Monaghan 1994)",
+        methods: &["sph"],
+        parameters: sph::drop::elliptic_parameters,
+        prepare: sph::drop::prepare_elliptic,
+    },
+    Scene {
+        name: "oscillating-drop",
+        summary: "a drop that swings in a central force (Monaghan & Rafiee 2013)",
+        methods: &["sph"],
+        parameters: sph::drop::oscillating_parameters,
+        prepare: sph::drop::prepare_oscillating,
+    },
+    Scene {
+        name: "rotating-patch",
+        summary: "a rotating square of fluid, under tension throughout (Colagrossi 2005)",
+        methods: &["sph"],
+        parameters: sph::rotating_patch::parameters,
+        prepare: sph::rotating_patch::prepare,
     },
 ];
 

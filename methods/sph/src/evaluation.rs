@@ -25,6 +25,8 @@ pub(crate) type MakeStage<T> = Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>;
 pub(crate) struct Update<T: Real> {
     pub reads: Vec<Quantity>,
     pub writes: Vec<Quantity>,
+    /// Whether it overwrites what is already there, in bodies, from sums over the fluid.
+    pub amends: bool,
     /// Makes its stage once the columns are known.
     pub stage: MakeStage<T>,
 }
@@ -46,6 +48,33 @@ impl<T: Real> Piece<T> {
         }
     }
 
+    /// Whether it needs what `writer` writes.
+    fn needs(&self, writer: &Self, dims: usize) -> bool {
+        let overlap = |a: Vec<Quantity>, b: Vec<Quantity>| a.iter().any(|q| b.contains(q));
+        match (self, writer) {
+            // The sums for bodies are over the fluid.
+            (Self::Term(term), Self::Update(update)) if update.amends && term.acts_on_bodies() => {
+                false
+            }
+            (Self::Update(update), _) if update.amends => {
+                overlap(self.reads(dims), writer.writes(dims))
+                    || overlap(self.writes(dims), writer.writes(dims))
+            }
+            _ => overlap(self.reads(dims), writer.writes(dims)),
+        }
+    }
+
+    /// Whether it is a sum that adds to what `other` adds to.
+    fn is_summed_with(&self, other: &Self, dims: usize) -> bool {
+        let both = matches!((self, other), (Self::Term(_), Self::Term(_)));
+        both && self.writes(dims).iter().any(|q| other.writes(dims).contains(q))
+    }
+
+    /// Whether it is a sum for the fluid.
+    fn acts_on_fluid(&self) -> bool {
+        matches!(self, Self::Term(term) if !term.acts_on_bodies())
+    }
+
     /// The first slot from `slot` on that it may take: updates take the even ones, sweeps the odd.
     fn from(&self, slot: usize) -> usize {
         slot + usize::from((slot % 2 == 1) != matches!(self, Self::Term(_)))
@@ -57,18 +86,15 @@ impl<T: Real> Piece<T> {
 /// # Panics
 /// If pieces need each other in a circle.
 pub(crate) fn slots<T: Real>(pieces: Vec<Piece<T>>, dims: usize) -> Vec<Vec<Piece<T>>> {
-    let reads: Vec<_> = pieces.iter().map(|piece| piece.reads(dims)).collect();
-    let writes: Vec<_> = pieces.iter().map(|piece| piece.writes(dims)).collect();
-    let share = |a: &[Quantity], b: &[Quantity]| a.iter().any(|q| b.contains(q));
     let mut slots: Vec<usize> = pieces.iter().map(|piece| piece.from(0)).collect();
     let mut is_settled = false;
     while !is_settled {
         is_settled = true;
         for i in 0..pieces.len() {
             for j in 0..pieces.len() {
-                let least = if i != j && share(&reads[i], &writes[j]) {
+                let least = if i != j && pieces[i].needs(&pieces[j], dims) {
                     slots[j] + 1
-                } else if share(&writes[i], &writes[j]) {
+                } else if pieces[i].is_summed_with(&pieces[j], dims) {
                     slots[j]
                 } else {
                     0
@@ -81,12 +107,30 @@ pub(crate) fn slots<T: Real>(pieces: Vec<Piece<T>>, dims: usize) -> Vec<Vec<Piec
             assert!(slots[i] <= 2 * pieces.len(), "terms need each other in a circle");
         }
     }
+    delay(&pieces, &mut slots, dims);
     let mut sorted: Vec<Vec<Piece<T>>> = Vec::new();
     sorted.resize_with(slots.iter().max().map_or(0, |last| last + 1), Vec::new);
     for (piece, slot) in pieces.into_iter().zip(slots) {
         sorted[slot].push(piece);
     }
     sorted
+}
+
+/// Moves sums for the fluid that nobody waits for from sweeps that would otherwise look at bodies
+/// only to the last sweep, so that the neighbours of the fluid are gathered once less.
+fn delay<T: Real>(pieces: &[Piece<T>], slots: &mut [usize], dims: usize) {
+    let is_last = |i: usize| {
+        pieces[i].acts_on_fluid() && !pieces.iter().any(|other| other.needs(&pieces[i], dims))
+    };
+    let Some(last) = (0..pieces.len()).filter(|&i| is_last(i)).map(|i| slots[i]).max() else {
+        return;
+    };
+    for i in 0..pieces.len() {
+        let waits = |j: usize| slots[j] != slots[i] || !pieces[j].acts_on_fluid() || is_last(j);
+        if is_last(i) && (0..pieces.len()).all(waits) {
+            slots[i] = last;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -100,6 +144,7 @@ mod tests {
         Piece::Update(Update {
             reads: Vec::new(),
             writes: vec![Quantity::Volume, Quantity::PressureTerm],
+            amends: false,
             stage: Box::new(|_| unreachable!("never made")),
         })
     }
@@ -128,7 +173,7 @@ mod tests {
         let viscous = vec![
             Piece::Term(StressDivergence { mass }.into()),
             Piece::Term(Continuity { mass }.into()),
-            Piece::Term(StrainRate { mass, dynamic_viscosity: 1.0 }.into()),
+            Piece::Term(StrainRate { mass, dynamic_viscosity: 1.0, in_bodies: None }.into()),
             Piece::Term(PressureGradient { mass }.into()),
             state_equation(),
         ];

@@ -21,6 +21,9 @@ pub struct Fields<T> {
     /// Depth below the surface of a body, m, for the particles that fill it; 0 in the fluid. Only
     /// where there are bodies.
     pub wall_depth: Option<State<T>>,
+    /// Velocity with which the surface of a body slides along itself, m/s, for the particles that
+    /// fill it; only where there are such bodies.
+    pub surface_velocity: Vec<State<T>>,
     /// Number that a particle keeps for life, while its place in memory changes.
     pub identity: State<u32>,
     /// Volume `m / rho`, m^3 (m^2 in 2-D, m in 1-D), of the present evaluation.
@@ -36,6 +39,25 @@ pub struct Fields<T> {
     /// `mu epsilon / rho^2`, the components xx, (xy, yy, (xz, yz, zz)); only with the viscosity in
     /// strain-rate form.
     pub stress_term: Vec<Rate<T>>,
+    /// Velocity that friction sees in bodies, m/s; only where it is extrapolated from the fluid.
+    pub mirrored_velocity: Vec<Rate<T>>,
+    /// Pressure that bodies take from the fluid, Pa; only where it is extrapolated.
+    pub wall_pressure: Option<Rate<T>>,
+    /// Sums of density differences over the kernel gradient, kg/m^4; only with density diffusion
+    /// that knows the gradient.
+    pub density_slope: Vec<Rate<T>>,
+    /// Gradient of the density of the present evaluation, kg/m^4; as above.
+    pub density_gradient: Vec<State<T>>,
+    /// Moment matrix of the neighbours, the components xx, (xy, yy, (xz, yz, zz)); only with terms
+    /// that correct the kernel gradient or know the free surface.
+    pub moment: Vec<Rate<T>>,
+    /// Inverse of the moment matrix; only with terms that correct the kernel gradient.
+    pub correction: Vec<State<T>>,
+    /// Smallest eigenvalue of the moment matrix: 1 in the fluid, less at a free surface; only with
+    /// terms that know the free surface.
+    pub fullness: Option<State<T>>,
+    /// Velocity of particles besides that of the fluid, m/s; only with shifting.
+    pub drift: Vec<Rate<T>>,
 }
 
 /// Where a quantity is stored.
@@ -55,13 +77,22 @@ impl<T: Real> Fields<T> {
     ) -> Self {
         let used = |quantity: Quantity| uses.contains(&quantity);
         let directions = &DIRECTIONS[..dims];
+        let vector = |component: fn(usize) -> Quantity| {
+            directions.iter().enumerate().filter(move |&(a, _)| used(component(a))).map(|(_, d)| d)
+        };
         let name = |what: &str, direction: &str| format!("{what}_{direction}");
+        let symmetric = |component: fn(usize) -> Quantity| {
+            Quantity::symmetric(component, dims).filter(|&q| used(q)).enumerate()
+        };
         Self {
             position: directions.iter().map(|d| columns.state(&name("position", d))).collect(),
             velocity: directions.iter().map(|d| columns.state(&name("velocity", d))).collect(),
             density: columns.state("density"),
             energy: used(Quantity::EnergyRate).then(|| columns.state("energy")),
             wall_depth: has_bodies.then(|| columns.state("wall_depth")),
+            surface_velocity: vector(Quantity::SurfaceVelocity)
+                .map(|d| columns.state(&name("surface_velocity", d)))
+                .collect(),
             identity: columns.state("identity"),
             volume: columns.register("volume"),
             pressure_term: columns.register("pressure_term"),
@@ -75,6 +106,26 @@ impl<T: Real> Fields<T> {
                 .filter(|&stress| used(stress))
                 .enumerate()
                 .map(|(k, _)| columns.rate(&format!("stress_term_{k}")))
+                .collect(),
+            mirrored_velocity: vector(Quantity::MirroredVelocity)
+                .map(|d| columns.rate(&name("mirrored_velocity", d)))
+                .collect(),
+            wall_pressure: used(Quantity::WallPressure).then(|| columns.rate("wall_pressure")),
+            density_slope: vector(Quantity::DensitySlope)
+                .map(|d| columns.rate(&name("density_slope", d)))
+                .collect(),
+            density_gradient: vector(Quantity::DensityGradient)
+                .map(|d| columns.register(&name("density_gradient", d)))
+                .collect(),
+            moment: symmetric(Quantity::Moment)
+                .map(|(k, _)| columns.rate(&format!("moment_{k}")))
+                .collect(),
+            correction: symmetric(Quantity::Correction)
+                .map(|(k, _)| columns.register(&format!("correction_{k}")))
+                .collect(),
+            fullness: used(Quantity::Fullness).then(|| columns.register("fullness")),
+            drift: vector(Quantity::Drift)
+                .map(|d| columns.rate(&name("drift", d)))
                 .collect(),
         }
     }
@@ -90,6 +141,20 @@ impl<T: Real> Fields<T> {
             Quantity::Acceleration(a) => Some(Column::Rate(self.acceleration[a])),
             Quantity::DensityRate => Some(Column::Rate(self.density_rate)),
             Quantity::EnergyRate => self.energy_rate.map(Column::Rate),
+            Quantity::SurfaceVelocity(a) => {
+                self.surface_velocity.get(a).copied().map(Column::State)
+            }
+            Quantity::MirroredVelocity(a) => {
+                self.mirrored_velocity.get(a).copied().map(Column::Rate)
+            }
+            Quantity::WallPressure => self.wall_pressure.map(Column::Rate),
+            Quantity::Density => Some(Column::State(self.density)),
+            Quantity::DensitySlope(a) => self.density_slope.get(a).copied().map(Column::Rate),
+            Quantity::DensityGradient(a) => self.density_gradient.get(a).copied().map(Column::State),
+            Quantity::Moment(k) => self.moment.get(k).copied().map(Column::Rate),
+            Quantity::Correction(k) => self.correction.get(k).copied().map(Column::State),
+            Quantity::Fullness => self.fullness.map(Column::State),
+            Quantity::Drift(a) => self.drift.get(a).copied().map(Column::Rate),
         }
     }
 

@@ -12,6 +12,7 @@
 //! | `sweep.rs` | a rate stage: gathers the neighbours of a particle once and runs the terms over them |
 //! | `neighbourhood.rs` | candidates of a cell, neighbours of a particle, in lanes |
 //! | [`kernel`] | smoothing functions |
+//! | [`body`], `wall.rs`, `wall_state.rs` | bodies, and how the fluid feels them |
 //! | [`packing`] | lattices that are exactly periodic |
 //! | [`physics`], [`scheme`], [`start`] | what a scene models, how, and from which particles |
 //! | [`model`] | builds a framework model of it |
@@ -51,6 +52,8 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod acceleration;
+pub mod body;
 pub mod dimension;
 pub mod error;
 pub mod fields;
@@ -60,9 +63,11 @@ pub mod model;
 pub mod packing;
 pub mod physics;
 pub mod scheme;
+pub mod stabilisation;
 pub mod start;
 pub mod state_equation;
 
+mod correction;
 mod evaluation;
 mod neighbourhood;
 mod pacing;
@@ -70,7 +75,10 @@ mod quantity;
 mod sweep;
 mod term;
 mod wall;
+mod wall_state;
 
+pub use acceleration::AccelerationField;
+pub use body::{Body, Slip, WallPressure, WallVelocity};
 pub use dimension::Dimension;
 pub use error::SphError;
 pub use fields::Fields;
@@ -79,5 +87,6 @@ pub use model::Sph;
 pub use packing::{Lattice, Packing};
 pub use physics::{Fluid, Physics, Viscosity};
 pub use scheme::Scheme;
+pub use stabilisation::{ArtificialViscosity, DensityDiffusion, DiffusionForm, Stabilisation};
 pub use start::Start;
 pub use state_equation::StateEquation;

@@ -4,6 +4,7 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::{Real, Whole};
 
 use crate::fields::Fields;
+use crate::physics::Fluid;
 
 /// Integrals over the fluid, without the particles that fill bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +53,60 @@ pub fn totals<T: Real>(
         flow: [sums[2], sums[3], sums[4]],
         momentum: [sums[5], sums[6], sums[7]],
         kinetic_energy: sums[8],
+    }
+}
+
+/// Energy of the fluid, J.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Energies {
+    /// Of the motion.
+    pub kinetic: f64,
+    /// In the body force.
+    pub potential: f64,
+    /// Of compression, from the reference density on.
+    pub elastic: f64,
+}
+
+impl Energies {
+    /// All together.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential + self.elastic
+    }
+}
+
+/// Sums up the energies of the fluid; `potential` is that of the body force per mass, J/kg.
+pub fn energies<T: Real>(
+    whole: &mut Whole<'_, Cells<T>>,
+    fields: &Fields<T>,
+    fluid: &Fluid,
+    particle_mass: f64,
+    potential: impl Fn([f64; 3]) -> f64 + Sync,
+) -> Energies {
+    let [kinetic, potential, elastic] = whole.sum(|near| {
+        let density = near.state(fields.density).own().whole();
+        let depth = fields.wall_depth.map(|d| near.state(d).own().whole());
+        let mut sums = [0.0; 3];
+        for i in 0..density.len() {
+            if depth.is_some_and(|d| d[i] > T::zero()) {
+                continue;
+            }
+            let mut x = [0.0; 3];
+            for (a, (&position, &velocity)) in
+                fields.position.iter().zip(&fields.velocity).enumerate()
+            {
+                x[a] = near.state(position).own().whole()[i].as_f64();
+                sums[0] += 0.5 * near.state(velocity).own().whole()[i].as_f64().powi(2);
+            }
+            sums[1] += potential(x);
+            let ratio = density[i].as_f64() / fluid.density;
+            sums[2] += fluid.state_equation.elastic_energy(ratio, fluid.sound_speed);
+        }
+        sums
+    });
+    Energies {
+        kinetic: kinetic * particle_mass,
+        potential: potential * particle_mass,
+        elastic: elastic * particle_mass,
     }
 }
 

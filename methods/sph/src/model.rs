@@ -4,6 +4,7 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::CellsOptions;
 use finegrain_framework::{Columns, Evolution, Handle, Model, Real, Stage};
 
+use crate::body::{Body, Slip, WallPressure, WallVelocity};
 use crate::dimension::Dimension;
 use crate::error::SphError;
 use crate::evaluation::{Piece, slots};
@@ -20,7 +21,10 @@ use crate::term::energy::Energy;
 use crate::term::momentum::{PressureGradient, StressDivergence};
 use crate::term::strain_rate::StrainRate;
 use crate::term::viscosity::MorrisViscosity;
-use crate::wall::{NoSlip, Walls};
+use crate::term::wall_pressure;
+use crate::term::wall_velocity::MirroredVelocity;
+use crate::wall::{Friction, NoSlip, VelocityInBodies, Walls};
+use crate::wall_state::WallState;
 
 /// A model and the handles of its fields.
 pub struct Sph<T: Real> {
@@ -55,35 +59,77 @@ impl<T: Real> Sph<T> {
     }
 }
 
+/// What friction sees in bodies, beside their velocity.
+fn velocity_in_bodies(physics: &Physics, scheme: &Scheme) -> Option<VelocityInBodies> {
+    let has_friction = physics.viscosity.is_some() && physics.slip == Slip::No;
+    if physics.bodies.is_empty() || !has_friction {
+        return None;
+    }
+    match scheme.wall_velocity {
+        WallVelocity::Mirrored => Some(VelocityInBodies::Mirrored),
+        WallVelocity::Linear => {
+            physics.bodies.iter().any(Body::slides).then_some(VelocityInBodies::Surface)
+        }
+    }
+}
+
+/// The pieces that bodies need.
+fn pieces_of_bodies<T: Real>(
+    fluid: &Fluid,
+    physics: &Physics,
+    scheme: &Scheme,
+    kernel: &Kernel<T>,
+    mass: T,
+) -> Vec<Piece<T>> {
+    let mut pieces = Vec::new();
+    // Less than a particle of the fluid at the edge of the support.
+    let least_kernel = T::of(1e-6) * kernel.w(T::zero());
+    if velocity_in_bodies(physics, scheme) == Some(VelocityInBodies::Mirrored) {
+        let slides = physics.bodies.iter().any(Body::slides);
+        pieces.push(Piece::Term(MirroredVelocity { slides, least_kernel }.into()));
+    }
+    if !physics.bodies.is_empty() && scheme.wall_pressure == WallPressure::Extrapolated {
+        let body_acceleration = physics.body_acceleration.map(T::of);
+        let term = wall_pressure::WallPressure { mass, body_acceleration, least_kernel };
+        pieces.extend([Piece::Term(term.into()), WallState::piece(fluid, mass)]);
+    }
+    pieces
+}
+
 /// The pieces that `physics` names; terms in the order in which they are added.
 fn pieces<T: Real>(
     fluid: &Fluid,
     physics: &Physics,
-    smoothing_length: f64,
+    scheme: &Scheme,
+    kernel: &Kernel<T>,
     mass: f64,
 ) -> Vec<Piece<T>> {
     let viscosity = physics.viscosity.map_or(0.0, |_| fluid.density * fluid.kinematic_viscosity);
     let (mass, dynamic_viscosity) = (T::of(mass), T::of(viscosity));
+    let in_bodies = velocity_in_bodies(physics, scheme);
     let state_equation = Thermodynamics::piece(fluid, mass);
     let mut terms = vec![Continuity { mass }.into()];
     if physics.viscosity == Some(Viscosity::StrainRate)
         || (physics.energy && physics.viscosity.is_some())
     {
-        terms.push(StrainRate { mass, dynamic_viscosity }.into());
+        terms.push(StrainRate { mass, dynamic_viscosity, in_bodies }.into());
     }
     terms.push(PressureGradient { mass }.into());
     match physics.viscosity {
         Some(Viscosity::StrainRate) => terms.push(StressDivergence { mass }.into()),
         Some(Viscosity::Morris) => {
-            let eta_squared = T::of(0.01 * smoothing_length * smoothing_length);
-            terms.push(MorrisViscosity { mass, dynamic_viscosity, eta_squared }.into());
+            let h = kernel.smoothing_length();
+            let eta_squared = T::of(0.01) * h * h;
+            let term = MorrisViscosity { mass, dynamic_viscosity, eta_squared, in_bodies };
+            terms.push(term.into());
         }
         None => {}
     }
     if physics.energy {
         terms.push(Energy { mass, dynamic_viscosity }.into());
     }
-    terms.into_iter().map(Piece::Term).chain([state_equation]).collect()
+    let of_bodies = pieces_of_bodies(fluid, physics, scheme, kernel, mass);
+    terms.into_iter().map(Piece::Term).chain([state_equation]).chain(of_bodies).collect()
 }
 
 fn build<T: Real, const D: usize>(
@@ -96,7 +142,15 @@ fn build<T: Real, const D: usize>(
     let smoothing_length = scheme.smoothing_ratio * start.spacing;
     let kernel = Kernel::new(scheme.kernel, dimension, T::of(smoothing_length));
     let particle_mass = fluid.density * start.particle_volume;
-    let pieces = pieces::<T>(fluid, physics, smoothing_length, particle_mass);
+    let mut pieces = pieces::<T>(fluid, physics, scheme, &kernel, particle_mass);
+    pieces.extend(scheme.stabilisation.pieces(
+        fluid,
+        physics,
+        &kernel,
+        start.spacing,
+        particle_mass,
+        D,
+    ));
     let range = kernel.support_radius().as_f64();
     let walls = Walls::new(&physics.bodies, &start.region, range);
 
@@ -113,11 +167,15 @@ fn build<T: Real, const D: usize>(
     };
     let domain = Cells::new(&mut columns, &fields.position, options)?;
 
-    let no_slip = has_bodies.then(|| NoSlip {
-        walls,
-        most: T::of(scheme.beta_max - 1.0),
-        least_distance: T::of(1e-3 * start.spacing),
-    });
+    let friction = match (physics.slip, scheme.wall_velocity) {
+        (Slip::Free, _) => Friction::None,
+        (Slip::No, WallVelocity::Linear) if has_bodies => Friction::Linear(NoSlip {
+            walls,
+            most: T::of(scheme.beta_max - 1.0),
+            least_distance: T::of(1e-3 * start.spacing),
+        }),
+        _ => Friction::AsGiven,
+    };
     let body_acceleration = std::array::from_fn(|a| T::of(physics.body_acceleration[a]));
     let mut evaluation = Vec::new();
     for slot in slots(pieces, D) {
@@ -134,7 +192,9 @@ fn build<T: Real, const D: usize>(
                 terms,
                 &fields,
                 body_acceleration,
-                no_slip.as_ref(),
+                physics.acceleration_field.as_ref(),
+                scheme.wall_pressure == WallPressure::Evolved,
+                &friction,
             )));
         }
     }
@@ -148,6 +208,10 @@ fn build<T: Real, const D: usize>(
         evolution = evolution
             .with_motion(fields.position[a], fields.velocity[a])
             .with(fields.velocity[a], fields.acceleration[a]);
+        if let Some(&drift) = fields.drift.get(a) {
+            columns.keep(drift.id());
+            evolution = evolution.with_drift(fields.position[a], drift);
+        }
     }
     if let (Some(energy), Some(rate)) = (fields.energy, fields.energy_rate) {
         evolution = evolution.with(energy, rate);

@@ -29,6 +29,7 @@ enum Source<T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Gathered<T> {
     position: Vec<State<T>>,
+    wall_depth: Option<State<T>>,
     /// What the places of all records hold.
     pages: Vec<Record<Source<T>>>,
     /// Place of each quantity in the records; `ABSENT` if the sweep does not gather it.
@@ -57,7 +58,13 @@ impl<T: Real> Gathered<T> {
         }
         sources.resize(sources.len().next_multiple_of(RECORD), Source::Nothing);
         let pages = sources.as_chunks().0.to_vec();
-        Self { position: fields.position.clone(), pages, places, present, has_kernel }
+        let (position, wall_depth) = (fields.position.clone(), fields.wall_depth);
+        Self { position, wall_depth, pages, places, present, has_kernel }
+    }
+
+    /// The column of the depth in bodies, if there are bodies.
+    pub fn wall_depth(&self) -> Option<State<T>> {
+        self.wall_depth
     }
 
     /// What the places of a candidate's records hold.
@@ -332,6 +339,21 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     pub fn wall_depth(&self) -> Option<&[T]> {
         (self.places[Quantity::WallDepth.index()] != ABSENT)
             .then(|| self.values(Quantity::WallDepth))
+    }
+
+    /// Writes `W_ij` for neighbours in the fluid, and 0 for those in bodies.
+    #[inline(always)]
+    pub fn kernel_in_fluid(&self, weight: &mut [T]) {
+        weight.copy_from_slice(self.kernel());
+        self.leave_out_bodies(weight);
+    }
+
+    /// Sets the weights of neighbours in bodies to 0.
+    #[inline(always)]
+    pub fn leave_out_bodies(&self, weight: &mut [T]) {
+        for (weight, &depth) in weight.iter_mut().zip(self.wall_depth().into_iter().flatten()) {
+            *weight = if depth > T::zero() { T::zero() } else { *weight };
+        }
     }
 
     /// A gathered quantity of the neighbours.

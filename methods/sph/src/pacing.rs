@@ -42,13 +42,16 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
     /// 1997, eqs. 29 to 31, with the speed added to that of sound).
     fn pace(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<Pace, Fault> {
         let fields = &self.fields;
-        let [v2_max, a2_max] = whole.max(|near| {
-            let mut most = [0.0f64; 2];
+        let [v2_max, a2_max, drift2_max] = whole.max(|near| {
+            let mut most = [0.0f64; 3];
             for i in 0..near.spans()[0].len() {
-                let mut squared = [0.0f64; 2];
+                let mut squared = [0.0f64; 3];
                 for (&v, &a) in fields.velocity.iter().zip(&fields.acceleration) {
                     squared[0] += near.state(v).own().whole()[i].as_f64().powi(2);
                     squared[1] += near.rate(a).own().whole()[i].as_f64().powi(2);
+                }
+                for &drift in &fields.drift {
+                    squared[2] += near.rate(drift).own().whole()[i].as_f64().powi(2);
                 }
                 for (most, x) in most.iter_mut().zip(squared) {
                     *most = if x > *most || x.is_nan() { x } else { *most };
@@ -73,6 +76,8 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
                 self.sound_speed
             )));
         }
+        // Shifted particles are faster than the fluid.
+        let speed = speed + drift2_max.sqrt();
         // A particle moves by at most t v + t^2 a in the time t, a factor of two allowed for
         // accelerations that grow meanwhile. That must stay within the skin.
         let slack = 0.8 * whole.domain.slack();

@@ -1,8 +1,9 @@
 //! What a scene models.
 
-use finegrain_framework::shape::Shape;
 use serde::{Deserialize, Serialize};
 
+use crate::acceleration::AccelerationField;
+use crate::body::{Body, Slip};
 use crate::error::{SphError, finite, not_negative, positive};
 use crate::state_equation::StateEquation;
 
@@ -36,8 +37,12 @@ pub struct Physics {
     pub energy: bool,
     /// Constant acceleration of the fluid, m/s^2; zero if none.
     pub body_acceleration: [f64; 3],
-    /// Bodies, filled with particles at rest and without slip.
-    pub bodies: Vec<Shape>,
+    /// Acceleration of the fluid that varies, besides.
+    pub acceleration_field: Option<AccelerationField>,
+    /// Bodies, filled with particles that do not move.
+    pub bodies: Vec<Body>,
+    /// Whether the fluid sticks to them.
+    pub slip: Slip,
 }
 
 impl Physics {
@@ -45,8 +50,8 @@ impl Physics {
         for acceleration in self.body_acceleration {
             finite("body_acceleration", acceleration)?;
         }
-        for (number, shape) in self.bodies.iter().enumerate() {
-            shape.check().map_err(|cause| SphError::Body { number, cause })?;
+        for (number, body) in self.bodies.iter().enumerate() {
+            body.check(number)?;
         }
         Ok(())
     }

@@ -16,11 +16,30 @@ pub(crate) enum Quantity {
     Acceleration(usize),
     DensityRate,
     EnergyRate,
+    /// Velocity with which the surface of a body slides along itself; 0 in the fluid.
+    SurfaceVelocity(usize),
+    /// Velocity that friction sees in a body; 0 in the fluid.
+    MirroredVelocity(usize),
+    /// Pressure of the fluid, continued into bodies; 0 in the fluid.
+    WallPressure,
+    Density,
+    /// Sums of density differences over the gradient, before the correction.
+    DensitySlope(usize),
+    /// Corrected gradient of the density.
+    DensityGradient(usize),
+    /// Moment matrix of the neighbours.
+    Moment(usize),
+    /// Inverse of the moment matrix.
+    Correction(usize),
+    /// Smallest eigenvalue of the moment matrix: 1 in the fluid, less at a free surface.
+    Fullness,
+    /// Velocity of a particle besides that of the fluid.
+    Drift(usize),
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 17;
+    pub const COUNT: usize = 47;
 
     /// Its place among all.
     #[inline(always)]
@@ -34,6 +53,16 @@ impl Quantity {
             Self::Acceleration(a) => 12 + a,
             Self::DensityRate => 15,
             Self::EnergyRate => 16,
+            Self::SurfaceVelocity(a) => 17 + a,
+            Self::MirroredVelocity(a) => 20 + a,
+            Self::WallPressure => 23,
+            Self::Density => 24,
+            Self::DensitySlope(a) => 25 + a,
+            Self::DensityGradient(a) => 28 + a,
+            Self::Moment(k) => 31 + k,
+            Self::Correction(k) => 37 + k,
+            Self::Fullness => 43,
+            Self::Drift(a) => 44 + a,
         }
     }
 

@@ -2,8 +2,10 @@
 
 use finegrain_framework::Integrator;
 
+use crate::body::{WallPressure, WallVelocity};
 use crate::error::{SphError, positive};
 use crate::kernel::SmoothingFunction;
+use crate::stabilisation::Stabilisation;
 
 /// How it is discretised.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +20,15 @@ pub struct Scheme {
     pub courant_number: f64,
     /// How much further than the support cells see, in particle spacings.
     pub skin: f64,
-    /// Largest extrapolation of the velocity into bodies, `beta_max` of Morris et al. (1997).
+    /// Where the pressure in bodies comes from.
+    pub wall_pressure: WallPressure,
+    /// Which velocity friction sees in bodies.
+    pub wall_velocity: WallVelocity,
+    /// Largest linear extrapolation of the velocity into bodies, `beta_max` of Morris et al.
+    /// (1997).
     pub beta_max: f64,
+    /// What takes out noise and keeps particles regular.
+    pub stabilisation: Stabilisation,
 }
 
 impl Default for Scheme {
@@ -31,7 +40,10 @@ impl Default for Scheme {
             integrator: Integrator::Leapfrog,
             courant_number: 1.0,
             skin: 0.2,
+            wall_pressure: WallPressure::Evolved,
+            wall_velocity: WallVelocity::Linear,
             beta_max: 1.5,
+            stabilisation: Stabilisation::default(),
         }
     }
 }
@@ -41,6 +53,7 @@ impl Scheme {
         positive("smoothing_ratio", self.smoothing_ratio)?;
         positive("courant_number", self.courant_number)?;
         positive("skin", self.skin)?;
-        positive("beta_max", self.beta_max)
+        positive("beta_max", self.beta_max)?;
+        self.stabilisation.check()
     }
 }

@@ -66,6 +66,14 @@ impl Start {
                     }
                 }
             }
+            for (i, &at) in self.positions.iter().enumerate() {
+                if columns.values(wall_depth)[i] > T::zero() {
+                    let velocity = walls.surface_velocity(at);
+                    for (&column, v) in fields.surface_velocity.iter().zip(velocity) {
+                        columns.values_mut(column)[i] = T::of(v);
+                    }
+                }
+            }
         }
     }
 }

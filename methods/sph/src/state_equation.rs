@@ -44,6 +44,42 @@ impl StateEquation {
     }
 }
 
+impl StateEquation {
+    /// Density, kg/m^3, at `pressure`: the inverse of [`StateEquation::pressure`]. Where no density
+    /// has so low a pressure, NaN or not positive.
+    #[inline(always)]
+    pub fn density<T: Real>(&self, pressure: T, reference_density: T, sound_speed: T) -> T {
+        let ratio = pressure / (sound_speed * sound_speed * reference_density);
+        match *self {
+            Self::Linear { background } => {
+                reference_density * (ratio + T::one() - T::of(background))
+            }
+            Self::Tait { exponent, background } => {
+                let power = T::of(exponent) * (ratio - T::of(background)) + T::one();
+                reference_density * power.powf(T::of(1.0 / exponent))
+            }
+        }
+    }
+}
+
+impl StateEquation {
+    /// Elastic energy, J/kg, at a density `ratio` to the reference density:
+    /// `e = integral p / rho^2 d rho` from there.
+    pub fn elastic_energy(&self, ratio: f64, sound_speed: f64) -> f64 {
+        let expansion = 1.0 / ratio - 1.0;
+        let (of_density, background) = match *self {
+            Self::Linear { background } => (ratio.ln() + expansion, background),
+            Self::Tait { exponent, background } => {
+                let power = exponent - 1.0;
+                let work =
+                    if power == 0.0 { ratio.ln() } else { (ratio.powf(power) - 1.0) / power };
+                ((work + expansion) / exponent, background)
+            }
+        };
+        sound_speed * sound_speed * (of_density - background * expansion)
+    }
+}
+
 /// The update that begins an evaluation: volume and `p / rho^2` from density.
 #[derive(Clone, Debug)]
 pub(crate) struct Thermodynamics<T> {
@@ -61,6 +97,7 @@ impl<T: Real> Thermodynamics<T> {
         Piece::Update(Update {
             reads: Vec::new(),
             writes: vec![Quantity::Volume, Quantity::PressureTerm],
+            amends: false,
             stage: Box::new(move |fields| {
                 Stage::update(Self {
                     fields: fields.clone(),

@@ -7,53 +7,65 @@ use finegrain_framework::{
     ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real,
 };
 
+use crate::acceleration::AccelerationField;
 use crate::fields::Fields;
 use crate::kernel::Kernel;
 use crate::neighbourhood::{Candidates, Gathered, Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 use crate::term::{AnyTerm, Term, Work};
-use crate::wall::{Extrapolation, NoSlip};
+use crate::wall::{Extrapolation, Friction};
 
 /// One sweep over all pairs, in `D` dimensions.
 #[derive(Clone, Debug)]
 pub(crate) struct Sweep<T, const D: usize> {
     name: String,
     kernel: Kernel<T>,
-    terms: Vec<AnyTerm<T>>,
+    /// The sums for particles of the fluid.
+    of_fluid: Vec<AnyTerm<T>>,
+    /// The sums for particles of bodies.
+    of_bodies: Vec<AnyTerm<T>>,
     gathered: Gathered<T>,
     outputs: Vec<(Quantity, Rate<T>)>,
     /// Acceleration of the fluid by a body force, m/s^2.
     body_acceleration: [T; D],
-    /// Only if a term sees velocities in bodies.
-    no_slip: Option<NoSlip<T>>,
+    /// The part of it that varies; only if accelerations are summed up.
+    acceleration_field: Option<AccelerationField>,
+    friction: Friction<T>,
 }
 
 impl<T: Real, const D: usize> Sweep<T, D> {
-    /// A sweep of `terms`, with the columns that they need.
+    /// A sweep of `terms`, with the columns that they need. If `bodies_evolve`, the sums for the
+    /// fluid are for the particles of bodies, too.
     pub fn new(
         kernel: Kernel<T>,
         terms: Vec<AnyTerm<T>>,
         fields: &Fields<T>,
         body_acceleration: [T; D],
-        no_slip: Option<&NoSlip<T>>,
+        acceleration_field: Option<&AccelerationField>,
+        bodies_evolve: bool,
+        friction: &Friction<T>,
     ) -> Self {
         let reads = terms.iter().flat_map(|term| term.reads(D)).chain([Quantity::WallDepth]);
         let mut writes: Vec<_> = terms.iter().flat_map(|term| term.writes(D)).collect();
         writes.sort_unstable();
         writes.dedup();
+        let accelerates = writes.contains(&Quantity::Acceleration(0));
         let outputs = writes.into_iter().filter_map(|q| Some((q, fields.rate(q)?))).collect();
         // Named after what it sums up, for error messages.
         let names: Vec<_> = terms.iter().map(AnyTerm::name).collect();
         let uses_kernel = terms.iter().any(Term::uses_kernel);
-        let extrapolates = terms.iter().any(Term::sees_velocity_in_bodies);
+        let sees_velocity = terms.iter().any(Term::sees_velocity_in_bodies);
+        let of_bodies = |term: &&AnyTerm<T>| term.acts_on_bodies() || bodies_evolve;
         Self {
             name: format!("sph {}", names.join(", ")),
             kernel,
             gathered: Gathered::new(fields, reads.collect(), uses_kernel),
-            terms,
+            of_fluid: terms.iter().filter(|term| !term.acts_on_bodies()).copied().collect(),
+            of_bodies: terms.iter().filter(of_bodies).copied().collect(),
             outputs,
             body_acceleration,
-            no_slip: no_slip.filter(|_| extrapolates).cloned(),
+            acceleration_field: acceleration_field.filter(|_| accelerates).cloned(),
+            friction: if sees_velocity { friction.clone() } else { Friction::AsGiven },
         }
     }
 
@@ -65,18 +77,41 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         block: &CellBlock<'_, T>,
         written: &mut Written<'_, T>,
         scratch: &mut Scratch<T, D>,
+        time: f64,
     ) {
         let Scratch { candidates, neighbours, work } = scratch;
         let first = near.spans()[0].start;
+        let own_depth = self.gathered.wall_depth().map(|depth| near.state(depth).own().whole());
         for cell in block.cells() {
+            let place = cell.span.start - first;
+            if let Some(depth) = own_depth
+                && !self.acts_on_any(&depth[place..place + cell.span.len()])
+            {
+                for column in &mut written[..self.outputs.len()] {
+                    column[place..place + cell.span.len()].fill(T::zero());
+                }
+                continue;
+            }
             candidates.collect(&self.gathered, near, block, cell, self.kernel.support_radius());
             for k in 0..cell.span.len() {
                 let mut particle = candidates.particle(&self.gathered, k);
+                let terms = self.terms_for(particle.is_wall());
+                if terms.is_empty() {
+                    for column in &mut written[..self.outputs.len()] {
+                        column[place + k] = T::zero();
+                    }
+                    continue;
+                }
                 particle.no_slip = self.no_slip(&particle);
                 neighbours.gather(&self.gathered, candidates, &particle, &self.kernel);
-                let sums = self.sum(&particle, neighbours, work);
+                let mut sums = self.sum(terms, &particle, neighbours, work);
+                if let Some(field) = &self.acceleration_field
+                    && !particle.is_wall()
+                {
+                    sums.add(Quantity::Acceleration, field.at(particle.position, time));
+                }
                 for (column, &(quantity, _)) in written.iter_mut().zip(&self.outputs) {
-                    column[cell.span.start - first + k] = sums[quantity];
+                    column[place + k] = sums[quantity];
                 }
             }
         }
@@ -84,18 +119,32 @@ impl<T: Real, const D: usize> Sweep<T, D> {
 
     #[inline(always)]
     fn no_slip(&self, i: &Particle<T, D>) -> Extrapolation<T> {
-        match &self.no_slip {
-            Some(no_slip) if !i.is_wall() => no_slip.at(i.position),
-            _ => Extrapolation::none(),
-        }
+        if i.is_wall() { Extrapolation::none() } else { self.friction.at(i.position) }
+    }
+
+    /// The terms that act on a particle.
+    #[inline(always)]
+    fn terms_for(&self, is_wall: bool) -> &[AnyTerm<T>] {
+        if is_wall { &self.of_bodies } else { &self.of_fluid }
+    }
+
+    /// Whether there are terms for any of the particles that are so deep in bodies.
+    fn acts_on_any(&self, wall_depth: &[T]) -> bool {
+        wall_depth.iter().any(|&depth| !self.terms_for(depth > T::zero()).is_empty())
     }
 
     /// All terms for one particle.
     #[inline(always)]
-    fn sum(&self, i: &Particle<T, D>, near: &Neighbours<T, D>, work: &mut Work<T>) -> Values<T> {
+    fn sum(
+        &self,
+        terms: &[AnyTerm<T>],
+        i: &Particle<T, D>,
+        near: &Neighbours<T, D>,
+        work: &mut Work<T>,
+    ) -> Values<T> {
         let mut sums = Values::zero();
         sums.add(Quantity::Acceleration, self.body_acceleration);
-        for term in &self.terms {
+        for term in terms {
             term.add(i, near, work, &mut sums);
         }
         if i.is_wall() {
@@ -134,6 +183,7 @@ struct Task<'s, 'n, T: Real, const D: usize> {
     block: &'s CellBlock<'n, T>,
     written: &'s mut Written<'n, T>,
     scratch: &'s mut Scratch<T, D>,
+    time: f64,
 }
 
 impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
@@ -141,7 +191,7 @@ impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.sweep.run(self.near, self.block, self.written, self.scratch);
+        self.sweep.run(self.near, self.block, self.written, self.scratch, self.time);
     }
 }
 
@@ -161,7 +211,7 @@ impl<T: Real, const D: usize> RateStage<Cells<T>> for Sweep<T, D> {
         near: &Near<'_, Cells<T>>,
         rates: &mut Rates<'_, Cells<T>>,
         scratch: &mut Self::Scratch,
-        _: &Moment,
+        moment: &Moment,
     ) -> Result<(), Fault> {
         let block = near.domain().sub_domain(near.id());
         let mut written: Written<'_, T> = std::array::from_fn(|_| &mut [][..]);
@@ -174,6 +224,7 @@ impl<T: Real, const D: usize> RateStage<Cells<T>> for Sweep<T, D> {
             block: &block,
             written: &mut written,
             scratch,
+            time: moment.stage_time,
         });
         Ok(())
     }

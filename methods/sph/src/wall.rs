@@ -1,22 +1,25 @@
 //! Bodies and the no-slip condition on them.
 //!
-//! A body is filled with virtual particles that do not move and take part in the sums (Monaghan
-//! 1994). For the viscous terms they are given the velocity that a linear profile through zero at
-//! the surface has where they are (Morris, Fox & Zhu 1997, section 3.4).
+//! A body is filled with particles that do not move and take part in the sums (Monaghan 1994). For
+//! the viscous terms they are given the velocity that a linear profile through that of the surface
+//! has where they are (Morris, Fox & Zhu 1997, section 3.4), or one that is extrapolated from the
+//! fluid (Adami, Hu & Adams 2012), or they are left out.
 
 use finegrain_framework::Real;
-use finegrain_framework::shape::Shape;
 use finegrain_framework::space::cells::Region;
+
+use crate::body::Body;
+use crate::quantity::Quantity;
 
 /// The surfaces of all bodies of a scene, with the periodic images that can be seen.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
-    bodies: Vec<(Shape, [f64; 3])>,
+    bodies: Vec<(Body, [f64; 3])>,
 }
 
 impl Walls {
     /// Bodies in a region; images further than `range` from all of the region are left out.
-    pub fn new(shapes: &[Shape], region: &Region, range: f64) -> Self {
+    pub fn new(all: &[Body], region: &Region, range: f64) -> Self {
         let dims = region.lower.len();
         let length = |a: usize| region.upper[a] - region.lower[a];
         let images = |a: usize| if a < dims && region.periodic[a] { -1..=1 } else { 0..=0 };
@@ -25,7 +28,7 @@ impl Walls {
         });
         let half_diagonal = 0.5 * (0..dims).map(|a| length(a).powi(2)).sum::<f64>().sqrt();
         let mut bodies = Vec::new();
-        for shape in shapes {
+        for body in all {
             for k in images(2) {
                 for j in images(1) {
                     for i in images(0) {
@@ -34,8 +37,8 @@ impl Walls {
                             shift[a] = f64::from(n) * length(a);
                         }
                         let seen = std::array::from_fn(|a| centre[a] + shift[a]);
-                        if shape.signed_distance(seen) < half_diagonal + range {
-                            bodies.push((*shape, shift));
+                        if body.shape.signed_distance(seen) < half_diagonal + range {
+                            bodies.push((*body, shift));
                         }
                     }
                 }
@@ -46,10 +49,62 @@ impl Walls {
 
     /// Distance to the nearest surface, m; negative inside a body.
     pub fn signed_distance(&self, x: [f64; 3]) -> f64 {
-        self.bodies
-            .iter()
-            .map(|(shape, shift)| shape.signed_distance(std::array::from_fn(|a| x[a] + shift[a])))
-            .fold(f64::INFINITY, f64::min)
+        self.distances(x).map(|(_, distance)| distance).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Velocity of the nearest surface, m/s; 0 if there is none.
+    pub fn surface_velocity(&self, x: [f64; 3]) -> [f64; 3] {
+        let nearest = self.distances(x).min_by(|(_, a), (_, b)| a.total_cmp(b));
+        nearest.map_or([0.0; 3], |(body, _)| body.surface_velocity)
+    }
+
+    fn distances(&self, x: [f64; 3]) -> impl Iterator<Item = (&Body, f64)> {
+        self.bodies.iter().map(move |(body, shift)| {
+            (body, body.shape.signed_distance(std::array::from_fn(|a| x[a] + shift[a])))
+        })
+    }
+}
+
+/// How friction sees the particles of bodies.
+#[derive(Clone, Debug)]
+pub(crate) enum Friction<T> {
+    /// With the velocity that they have been given.
+    AsGiven,
+    /// On a linear profile.
+    Linear(NoSlip<T>),
+    /// Not at all.
+    None,
+}
+
+impl<T: Real> Friction<T> {
+    /// How a fluid particle at `position` sees the velocities in bodies.
+    #[inline(always)]
+    pub fn at<const D: usize>(&self, position: [T; D]) -> Extrapolation<T> {
+        match self {
+            Self::AsGiven => Extrapolation::none(),
+            Self::Linear(no_slip) => no_slip.at(position),
+            Self::None => Extrapolation::frictionless(),
+        }
+    }
+}
+
+/// Velocity that friction sees in bodies, besides that with which their particles move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum VelocityInBodies {
+    /// That of the surface.
+    Surface,
+    /// That which is extrapolated from the fluid.
+    Mirrored,
+}
+
+impl VelocityInBodies {
+    /// Its component `a`.
+    #[inline(always)]
+    pub fn component(self, a: usize) -> Quantity {
+        match self {
+            Self::Surface => Quantity::SurfaceVelocity(a),
+            Self::Mirrored => Quantity::MirroredVelocity(a),
+        }
     }
 }
 
@@ -77,8 +132,8 @@ impl<T: Real> NoSlip<T> {
 }
 
 /// How one particle sees the velocities of wall particles: a velocity that falls linearly through
-/// zero at the surface differs from its own by `1 + depth_j / distance_i` times the difference to
-/// a particle at rest, at most `beta_max` times.
+/// that of the surface differs from its own by `1 + depth_j / distance_i` times the difference to
+/// the surface, at most `beta_max` times.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extrapolation<T> {
     most: T,
@@ -86,9 +141,16 @@ pub(crate) struct Extrapolation<T> {
 }
 
 impl<T: Real> Extrapolation<T> {
-    /// Wall particles are seen at rest.
+    /// Wall particles are seen as they are.
+    #[inline(always)]
     pub fn none() -> Self {
         Self { most: T::zero(), per_depth: T::zero() }
+    }
+
+    /// Wall particles are not seen: at any depth their weight is multiplied by zero.
+    #[inline(always)]
+    pub fn frictionless() -> Self {
+        Self { most: T::zero(), per_depth: T::min_value() }
     }
 
     /// Multiplies the weights of velocity differences accordingly.
@@ -96,7 +158,7 @@ impl<T: Real> Extrapolation<T> {
     pub fn amplify(&self, weights: &mut [T], wall_depth: Option<&[T]>) {
         let Self { most, per_depth } = *self;
         for (weight, &depth) in weights.iter_mut().zip(wall_depth.into_iter().flatten()) {
-            *weight *= T::one() + (depth * per_depth).min(most);
+            *weight *= T::one() + (depth * per_depth).min(most).max(-T::one());
         }
     }
 }

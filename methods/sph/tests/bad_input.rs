@@ -51,7 +51,7 @@ fn numbers_outside_their_range() {
 #[test]
 fn a_body_that_makes_no_sense() {
     let body = Shape::Cylinder { axis: Axis::Z, centre: [0.5; 3], radius: -0.1 };
-    let physics = Physics { bodies: vec![body], ..Physics::default() };
+    let physics = Physics { bodies: vec![body.into()], ..Physics::default() };
     let said = complaint(&start(), &FLUID, &physics, &Scheme::default());
     assert!(said.contains("body 0"), "{said}");
 }

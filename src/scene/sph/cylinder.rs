@@ -77,7 +77,7 @@ fn build<T: Real>(
     let physics = Physics {
         viscosity: Some(super::viscosity(parameters)),
         body_acceleration: [scene.body_acceleration, 0.0, 0.0],
-        bodies: vec![scene.body(lengths)],
+        bodies: vec![scene.body(lengths).into()],
         ..Physics::default()
     };
     let scheme = Scheme { beta_max: parameters.number("beta_max"), ..super::scheme(parameters) };

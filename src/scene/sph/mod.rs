@@ -1,6 +1,9 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
 pub mod cylinder;
+pub mod drop;
+pub mod free_surface;
+pub mod rotating_patch;
 pub mod taylor_green;
 
 use std::time::Duration;

@@ -3,22 +3,38 @@
 //! A term is a sum over the neighbours of a particle. It reads gathered lanes and adds to the
 //! particle's sums; the files read like their equations.
 
+pub(crate) mod artificial_pressure;
+pub(crate) mod artificial_viscosity;
 pub(crate) mod continuity;
+pub(crate) mod density_diffusion;
 pub(crate) mod energy;
+pub(crate) mod moment;
 pub(crate) mod momentum;
+pub(crate) mod shifting;
 pub(crate) mod strain_rate;
+pub(crate) mod tensile_control;
 pub(crate) mod viscosity;
+pub(crate) mod wall_pressure;
+pub(crate) mod wall_velocity;
 
 use finegrain_framework::Real;
 
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 
+use artificial_pressure::ArtificialPressure;
+use artificial_viscosity::ArtificialViscosity;
 use continuity::Continuity;
+use density_diffusion::DensityDiffusion;
 use energy::Energy;
+use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
+use shifting::Shifting;
 use strain_rate::StrainRate;
+use tensile_control::TensileControl;
 use viscosity::MorrisViscosity;
+use wall_pressure::WallPressure;
+use wall_velocity::MirroredVelocity;
 
 /// One piece of physics: a sum over neighbours.
 pub(crate) trait Term<T: Real> {
@@ -35,6 +51,11 @@ pub(crate) trait Term<T: Real> {
 
     /// Whether velocities in bodies matter to it, which the no-slip condition extrapolates.
     fn sees_velocity_in_bodies(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a sum for the particles of bodies, and not for those of the fluid.
+    fn acts_on_bodies(&self) -> bool {
         false
     }
 
@@ -100,6 +121,12 @@ macro_rules! terms {
                 }
             }
 
+            fn acts_on_bodies(&self) -> bool {
+                match self {
+                    $(Self::$Name(term) => Term::<T>::acts_on_bodies(term),)*
+                }
+            }
+
             #[inline(always)]
             fn add<const D: usize>(
                 &self,
@@ -116,7 +143,23 @@ macro_rules! terms {
     };
 }
 
-terms!(Continuity, StrainRate, PressureGradient, StressDivergence, MorrisViscosity, Energy);
+terms!(
+    Continuity,
+    StrainRate,
+    PressureGradient,
+    StressDivergence,
+    MorrisViscosity,
+    Energy,
+    MirroredVelocity,
+    WallPressure,
+    MomentMatrix,
+    DensitySlope,
+    DensityDiffusion,
+    ArtificialViscosity,
+    ArtificialPressure,
+    TensileControl,
+    Shifting,
+);
 
 /// Lanes that a term works with: a weight for each neighbour.
 #[derive(Clone, Debug, Default)]

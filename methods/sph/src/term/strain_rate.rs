@@ -5,6 +5,7 @@ use finegrain_framework::Real;
 use super::{Term, Work};
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values, component};
+use crate::wall::VelocityInBodies;
 
 /// `mu epsilon_i / rho_i^2` with the strain rate
 /// `epsilon^ab = d_b v^a + d_a v^b - 2/3 (div v) delta^ab`, where
@@ -16,12 +17,16 @@ pub(crate) struct StrainRate<T> {
     pub mass: T,
     /// Dynamic viscosity `mu`, Pa s.
     pub dynamic_viscosity: T,
+    /// Velocity that is seen in bodies, besides that with which particles move.
+    pub in_bodies: Option<VelocityInBodies>,
 }
 
 impl<T: Real> Term<T> for StrainRate<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
         let velocity = Quantity::vector(Quantity::Velocity, dims);
-        velocity.chain([Quantity::Volume, Quantity::WallDepth]).collect()
+        let in_bodies =
+            self.in_bodies.into_iter().flat_map(|v| (0..dims).map(move |a| v.component(a)));
+        velocity.chain(in_bodies).chain([Quantity::Volume, Quantity::WallDepth]).collect()
     }
 
     fn writes(&self, dims: usize) -> Vec<Quantity> {
@@ -52,6 +57,12 @@ impl<T: Real> Term<T> for StrainRate<T> {
             let (own, v) = (i[Quantity::Velocity(a)], near.values(Quantity::Velocity(a)));
             for ((jump, &weight), &v) in jump.iter_mut().zip(&*weight).zip(v) {
                 *jump = weight * (v - own);
+            }
+            if let Some(in_bodies) = self.in_bodies {
+                let lanes = jump.iter_mut().zip(&*weight).zip(near.values(in_bodies.component(a)));
+                for ((jump, &weight), &v) in lanes {
+                    *jump += weight * v;
+                }
             }
             gradient[a] = near.sum_differences(jump);
         }

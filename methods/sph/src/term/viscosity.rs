@@ -5,6 +5,7 @@ use finegrain_framework::Real;
 use super::{Term, Work};
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
+use crate::wall::VelocityInBodies;
 
 /// `sum_j m_j (mu_i + mu_j) / (rho_i rho_j) (x_ij . grad_i W_ij) / (r_ij^2 + eta^2) v_ij`, m/s^2
 /// (Morris et al. 1997, eq. 22).
@@ -17,12 +18,16 @@ pub(crate) struct MorrisViscosity<T> {
     pub dynamic_viscosity: T,
     /// `eta^2 = 0.01 h^2`, m^2: keeps the denominator from vanishing.
     pub eta_squared: T,
+    /// Velocity that is seen in bodies, besides that with which particles move.
+    pub in_bodies: Option<VelocityInBodies>,
 }
 
 impl<T: Real> Term<T> for MorrisViscosity<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
         let velocity = Quantity::vector(Quantity::Velocity, dims);
-        velocity.chain([Quantity::Volume, Quantity::WallDepth]).collect()
+        let in_bodies =
+            self.in_bodies.into_iter().flat_map(|v| (0..dims).map(move |a| v.component(a)));
+        velocity.chain(in_bodies).chain([Quantity::Volume, Quantity::WallDepth]).collect()
     }
 
     fn writes(&self, dims: usize) -> Vec<Quantity> {
@@ -57,6 +62,11 @@ impl<T: Real> Term<T> for MorrisViscosity<T> {
             let (own, v) = (i[Quantity::Velocity(a)], near.values(Quantity::Velocity(a)));
             for (jump, &v) in jump.iter_mut().zip(v) {
                 *jump = own - v;
+            }
+            if let Some(in_bodies) = self.in_bodies {
+                for (jump, &v) in jump.iter_mut().zip(near.values(in_bodies.component(a))) {
+                    *jump -= v;
+                }
             }
             let [sum] = T::dots(weight, [&*jump]);
             sums[Quantity::Acceleration(a)] += scale * sum;

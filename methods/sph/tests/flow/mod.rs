@@ -52,7 +52,7 @@ pub fn flow<T: Real>(
     let physics = Physics {
         viscosity: Some(viscosity),
         body_acceleration: if has_body { [0.3, 0.0, 0.0] } else { [0.0; 3] },
-        bodies: if has_body { vec![body] } else { Vec::new() },
+        bodies: if has_body { vec![body.into()] } else { Vec::new() },
         ..Physics::default()
     };
     let sph = Sph::<T>::new(&start, &fluid, &physics, &Scheme::default()).unwrap();

@@ -1,0 +1,75 @@
+//! Bodies, and how the fluid feels them.
+
+use finegrain_framework::shape::Shape;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{SphError, finite};
+
+/// A body, filled with particles that do not move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// The space that it fills.
+    pub shape: Shape,
+    /// Velocity with which its surface slides along itself, m/s, as a lid or a belt does; the
+    /// particles stay where they are.
+    pub surface_velocity: [f64; 3],
+}
+
+impl From<Shape> for Body {
+    /// A body at rest.
+    fn from(shape: Shape) -> Self {
+        Self { shape, surface_velocity: [0.0; 3] }
+    }
+}
+
+impl Body {
+    pub(crate) fn check(&self, number: usize) -> Result<(), SphError> {
+        self.shape.check().map_err(|cause| SphError::Body { number, cause })?;
+        for component in self.surface_velocity {
+            finite("surface_velocity", component)?;
+        }
+        Ok(())
+    }
+
+    /// Whether its surface moves.
+    pub(crate) fn slides(&self) -> bool {
+        self.surface_velocity != [0.0; 3]
+    }
+}
+
+/// Whether the fluid sticks to bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Slip {
+    /// It has the velocity of the surface there.
+    #[default]
+    No,
+    /// It passes without friction: the viscous terms leave bodies out.
+    Free,
+}
+
+/// Where the pressure of the particles that fill bodies comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WallPressure {
+    /// From a density that evolves as that of the fluid does: virtual particles that repel by
+    /// being compressed (Monaghan 1994).
+    #[default]
+    Evolved,
+    /// From the fluid around, as a mean weighted with the kernel, continued hydrostatically
+    /// (Adami, Hu & Adams 2012, eqs. 27 and 28).
+    Extrapolated,
+}
+
+/// Which velocity friction sees in bodies that the fluid sticks to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WallVelocity {
+    /// A profile that is linear from the particle that sees it through that of the surface, at
+    /// most `beta_max` times its own (Morris, Fox & Zhu 1997, section 3.4).
+    #[default]
+    Linear,
+    /// Twice that of the surface less a mean of the fluid around, weighted with the kernel (Adami,
+    /// Hu & Adams 2012, eqs. 22 and 23).
+    Mirrored,
+}
