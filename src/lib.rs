@@ -21,6 +21,7 @@
 
 pub mod bench;
 pub mod figure;
+pub mod report;
 pub mod scene;
 
 pub use finegrain_framework as framework;

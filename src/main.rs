@@ -28,6 +28,9 @@ enum Command {
     /// Measure speed, speed-up and efficiency.
     #[command(subcommand)]
     Bench(cli::bench::BenchCommand),
+    /// Run many cases and say what they tell together.
+    #[command(subcommand)]
+    Report(cli::report::ReportCommand),
 }
 
 fn main() -> ExitCode {
@@ -36,6 +39,7 @@ fn main() -> ExitCode {
         Some(Command::Run(arguments)) => cli::run::run(arguments),
         Some(Command::Scenes) => cli::scenes::list(&mut std::io::stdout().lock()),
         Some(Command::Bench(command)) => cli::bench::bench(command),
+        Some(Command::Report(command)) => cli::report::report(command),
         None => cli::bench::bench(cli::bench::BenchCommand::default()),
     };
     match outcome {

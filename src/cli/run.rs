@@ -44,6 +44,9 @@ pub struct RunArguments {
     /// End at this time, in seconds, counted from time 0; the last steps are made shorter to hit it.
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
+    /// End after so many seconds of wall-clock time, in order; --restart goes on from there.
+    #[arg(long, value_name = "SECONDS", value_parser = duration, allow_negative_numbers = true)]
+    wall_clock: Option<Duration>,
     /// Folder for dumps, histories, checkpoints and the picture of the final field; files of an
     /// earlier run in it are overwritten.
     #[arg(long)]
@@ -76,6 +79,10 @@ fn positive(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|x: &f64| *x > 0.0 && x.is_finite())
         .ok_or_else(|| format!("{text:?} is not a finite number above zero"))
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    Duration::try_from_secs_f64(positive(text)?).map_err(|why| format!("{text} s: {why}"))
 }
 
 /// What `--json` prints.
@@ -157,6 +164,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         workers: arguments.workers.map(usize::from),
         steps: arguments.steps,
         until: arguments.until,
+        wall_clock: arguments.wall_clock,
         out: arguments.out.clone(),
         dump_every: arguments.dump_every,
         checkpoint_every: arguments.checkpoint_every,

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`Chart`] | lines with markers: time, speed-up or efficiency against the number of processors |
 //! | [`Field`] | the value of a field at points or on a grid, coloured, with a colour bar |
+//! | [`Tiles`] | rows of coloured tiles with a few words in each |
 //!
 //! # Example
 //! ```
@@ -30,6 +31,7 @@ mod nearest;
 mod number;
 mod outline;
 mod ruler;
+mod tiles;
 mod viridis;
 
 pub use axis::{Axis, Scale};
@@ -37,3 +39,4 @@ pub use chart::Chart;
 pub use error::FigureError;
 pub use field::{Field, Mark};
 pub use outline::Outline;
+pub use tiles::{Tile, Tiles, Tone};

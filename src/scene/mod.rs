@@ -12,6 +12,7 @@ pub mod sph;
 pub mod taylor_green;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use finegrain_framework::run::{Progress, RunFailed};
 use finegrain_framework::{Schedule, Settings};
@@ -52,6 +53,8 @@ pub struct Orders {
     pub steps: Option<u64>,
     /// End at this time, s.
     pub until: Option<f64>,
+    /// End after so much wall-clock time.
+    pub wall_clock: Option<Duration>,
     /// Folder for files; none are written without.
     pub out: Option<PathBuf>,
     /// Dump fields every so many steps; ten times by default.

@@ -1,7 +1,7 @@
 //! Scalar quantities of the flow, as deterministic reductions.
 
 use finegrain_framework::space::Cells;
-use finegrain_framework::{Real, Whole};
+use finegrain_framework::{Near, Real, State, Whole};
 
 use crate::fields::Fields;
 use crate::physics::Fluid;
@@ -132,30 +132,64 @@ pub fn largest_speed<T: Real>(whole: &mut Whole<'_, Cells<T>>, fields: &Fields<T
 pub fn mean_neighbours<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> f64 {
     // Pairs exactly the range apart do not interact.
     let range = T::of(whole.domain.range()) * (T::one() - T::epsilon().sqrt());
-    let positions = whole.domain.positions().to_vec();
     let points = whole.columns.points() as f64;
+    let positions = whole.domain.positions().to_vec();
     let [pairs] = whole.sum(|near| {
-        let block = near.sub_domain();
-        let (mut runs, mut pairs) = (Vec::new(), 0);
-        let own: Vec<_> = positions.iter().map(|&x| near.state(x).own().whole()).collect();
-        let first = near.spans()[0].start;
-        for cell in block.cells() {
-            block.candidates(cell, &mut runs);
-            for run in &runs {
-                let reach = near.reach(run.owner, run.span);
-                let seen: Vec<_> = positions.iter().map(|&x| near.state(x).at(reach)).collect();
-                for i in cell.span.range() {
-                    for j in 0..run.span.len() {
-                        let squared = own.iter().zip(&seen).enumerate().map(|(a, (own, seen))| {
-                            let d = own[i - first] - (seen[j] + T::of(run.shift[a]));
-                            d * d
-                        });
-                        pairs += u64::from(squared.sum::<T>() < range * range);
-                    }
-                }
-            }
-        }
+        let mut pairs = 0;
+        for_each_pair(near, &positions, |squared| pairs += u64::from(squared < range * range));
         [pairs as f64]
     });
     pairs / points - 1.0
+}
+
+/// Distance of the two particles that are closest to each other, m; infinite if no two are within
+/// the range of interaction.
+pub fn closest_pair<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> f64 {
+    let positions = whole.domain.positions().to_vec();
+    let range = T::of(whole.domain.range());
+    let [nearness] = whole.max(|near| {
+        let mut least = range * range;
+        let mut at_once = 0;
+        for_each_pair(near, &positions, |squared| {
+            // Every particle once meets itself.
+            if squared == T::zero() {
+                at_once += 1;
+            } else {
+                least = least.min(squared);
+            }
+        });
+        let coincide = at_once > near.spans()[0].len();
+        [if coincide { f64::INFINITY } else { 1.0 / least.as_f64() }]
+    });
+    let closest = nearness.recip().sqrt();
+    if closest < range.as_f64() { closest } else { f64::INFINITY }
+}
+
+/// Calls `with` with the squared distances of all pairs of a particle of the sub-domain and a
+/// particle in a cell around it, itself included.
+fn for_each_pair<T: Real>(
+    near: &Near<'_, Cells<T>>,
+    positions: &[State<T>],
+    mut with: impl FnMut(T),
+) {
+    let block = near.sub_domain();
+    let mut runs = Vec::new();
+    let own: Vec<_> = positions.iter().map(|&x| near.state(x).own().whole()).collect();
+    let first = near.spans()[0].start;
+    for cell in block.cells() {
+        block.candidates(cell, &mut runs);
+        for run in &runs {
+            let reach = near.reach(run.owner, run.span);
+            let seen: Vec<_> = positions.iter().map(|&x| near.state(x).at(reach)).collect();
+            for i in cell.span.range() {
+                for j in 0..run.span.len() {
+                    let squared = own.iter().zip(&seen).enumerate().map(|(a, (own, seen))| {
+                        let d = own[i - first] - (seen[j] + T::of(run.shift[a]));
+                        d * d
+                    });
+                    with(squared.sum());
+                }
+            }
+        }
+    }
 }

@@ -39,7 +39,8 @@ fn accelerations(viscosity: Viscosity) -> Vec<(f64, [f64; 2])> {
         state_equation: StateEquation::Linear { background: 0.0 },
     };
     let wall = Shape::HalfSpace { point: [0.0; 3], outward: [0.0, 1.0, 0.0] };
-    let physics = Physics { viscosity: Some(viscosity), bodies: vec![wall.into()], ..Physics::default() };
+    let physics =
+        Physics { viscosity: Some(viscosity), bodies: vec![wall.into()], ..Physics::default() };
     // The first row of fluid sees wall particles 3 spacings deep from a height of half a one.
     let scheme = Scheme { beta_max: 10.0, ..Scheme::default() };
     let Sph { model, fields, .. } = Sph::<f64>::new(&start, &fluid, &physics, &scheme).unwrap();

@@ -11,7 +11,7 @@ use std::time::Duration;
 use finegrain_framework::run::{Dump, Every, Run, Summary, Until};
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Integrator, Real, Simulation, State};
-use finegrain_sph::{Fields, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity};
+use finegrain_sph::{Fields, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity, measure};
 
 use super::parameter::{Parameter, Parameters};
 use super::{Orders, Prepared, Report, SceneError};
@@ -121,7 +121,7 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
         let simulation = Simulation::new(model, settings)
             .map_err(|cause| SceneError::Workers { workers, cause })?;
         let end_time = orders.until.or(orders.steps.is_none().then(|| flow.end_time()));
-        let until = Until { steps: orders.steps, time: end_time, wall_clock: None };
+        let until = Until { steps: orders.steps, time: end_time, wall_clock: orders.wall_clock };
         let mut run = Run::new(simulation).until(until).scene(description);
         run = flow.observe(run, &fields, particle_mass);
         if let Some(out) = orders.out {
@@ -153,6 +153,9 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
         let mut report = Report::new(&summary, points);
         let simulation = run.simulation_mut();
         flow.judge(&mut report, &summary, simulation, &fields, particle_mass);
+        // Over the spacing: a sign of clumping.
+        let closest = measure::closest_pair(&mut simulation.whole()) / flow.spacing();
+        report.results.insert("closest_pair", closest);
         report.picture = Some(picture(simulation, &fields, flow.title(), flow.spacing()));
         Ok(report)
     }

@@ -1,0 +1,142 @@
+//! The hard cases, and the variants that are tried on them.
+
+/// A scene run for long or at its limits.
+#[derive(Clone, Copy, Debug)]
+pub struct HardCase {
+    /// Its name.
+    pub name: &'static str,
+    /// The scene.
+    pub scene: &'static str,
+    /// What is set in all variants.
+    pub settings: &'static [(&'static str, &'static str)],
+    /// How long, s.
+    pub until: f64,
+    /// What is tried.
+    pub variants: &'static [Variant],
+    /// What must hold of the results for them to be right.
+    pub signs: &'static [Sign],
+}
+
+/// A choice of terms, kernel, integrator.
+#[derive(Clone, Copy, Debug)]
+pub struct Variant {
+    /// Its name.
+    pub name: &'static str,
+    /// What is set.
+    pub settings: &'static [(&'static str, &'static str)],
+}
+
+/// A result that betrays a run that went wrong without a failure.
+#[derive(Clone, Copy, Debug)]
+pub struct Sign {
+    /// Name of the result.
+    pub result: &'static str,
+    /// Smallest value of a run that went well.
+    pub least: f64,
+    /// Largest value of a run that went well.
+    pub most: f64,
+    /// What it means if the value is another.
+    pub symptom: &'static str,
+}
+
+/// All hard cases (`finegrain report stability`).
+pub const HARD_CASES: [HardCase; 5] = [
+    HardCase {
+        name: "taylor-green, Re 1000",
+        scene: "taylor-green",
+        settings: &[("reynolds", "1000"), ("disturbance", "0")],
+        until: 5.0,
+        variants: VORTICES,
+        signs: &[WRONG_VELOCITY, CLUMPING],
+    },
+    HardCase {
+        name: "taylor-green, Re 10000",
+        scene: "taylor-green",
+        settings: &[("reynolds", "10000"), ("disturbance", "0")],
+        until: 5.0,
+        variants: VORTICES,
+        signs: &[WRONG_VELOCITY, CLUMPING],
+    },
+    HardCase {
+        name: "rotating patch, omega t = 4",
+        scene: "rotating-patch",
+        settings: &[],
+        until: 4.0,
+        variants: FREE_SURFACE,
+        signs: &[
+            Sign { result: "voids", least: 0.0, most: 0.005, symptom: "voids" },
+            Sign { result: "angular_momentum", least: 0.97, most: 1.03, symptom: "torque" },
+            ENERGY,
+            CLUMPING,
+        ],
+    },
+    HardCase {
+        name: "dam break, far wall and back",
+        scene: "dam-break",
+        settings: &[],
+        until: 5.0,
+        variants: FREE_SURFACE,
+        signs: &[THROUGH_WALLS, ENERGY, CLUMPING],
+    },
+    HardCase {
+        name: "hydrostatic, 200 sqrt(H/g)",
+        scene: "hydrostatic-tank",
+        settings: &[],
+        // Depth 1 m.
+        until: 63.86,
+        variants: FREE_SURFACE,
+        signs: &[
+            THROUGH_WALLS,
+            Sign { result: "largest_speed", least: 0.0, most: 0.02, symptom: "motion" },
+            Sign { result: "pressure_l2", least: 0.0, most: 0.03, symptom: "wrong pressure" },
+            CLUMPING,
+        ],
+    },
+];
+
+const CLUMPING: Sign =
+    Sign { result: "closest_pair", least: 0.25, most: f64::INFINITY, symptom: "clumping" };
+const WRONG_VELOCITY: Sign =
+    Sign { result: "velocity_l1", least: 0.0, most: 0.1, symptom: "wrong velocity" };
+const ENERGY: Sign =
+    Sign { result: "energy_growth", least: 0.0, most: 0.01, symptom: "energy growth" };
+const THROUGH_WALLS: Sign =
+    Sign { result: "through_walls", least: 0.0, most: 0.0, symptom: "penetration" };
+
+const VORTICES: &[Variant] = &[
+    variant("default", &[]),
+    variant("no transport", &[("transport", "0")]),
+    variant("state equation", &[("pressure", "state-equation")]),
+    variant(
+        "plain (I.1, I.2)",
+        &[
+            ("pressure", "state-equation"),
+            ("density", "continuity"),
+            ("pressure_form", "symmetric"),
+            ("viscous_form", "strain-rate"),
+            ("transport", "0"),
+        ],
+    ),
+    variant("wendland-c2, 1.5", &[("kernel", "wendland-c2"), ("smoothing_ratio", "1.5")]),
+    variant("gaussian", &[("kernel", "gaussian")]),
+    variant("symplectic-euler", &[("integrator", "symplectic-euler")]),
+    variant("rk4", &[("integrator", "rk4")]),
+];
+
+const FREE_SURFACE: &[Variant] = &[
+    variant("default", &[]),
+    variant("no diffusion", &[("density_diffusion", "none")]),
+    variant("no viscosity", &[("artificial_viscosity", "0")]),
+    variant("no shifting", &[("shifting", "off")]),
+    variant("shifting", &[("shifting", "on")]),
+    variant("no tension control", &[("tension", "none")]),
+    variant("tension control", &[("tension", "control")]),
+    variant("artificial pressure", &[("tension", "artificial-pressure")]),
+    variant("quintic spline", &[("kernel", "quintic-spline"), ("smoothing_ratio", "1.0")]),
+    variant("symplectic-euler", &[("integrator", "symplectic-euler")]),
+    variant("rk4", &[("integrator", "rk4")]),
+];
+
+const fn variant(name: &'static str, settings: &'static [(&'static str, &'static str)]) -> Variant {
+    Variant { name, settings }
+}

@@ -1,0 +1,206 @@
+//! Stability maps: which variants of a scheme survive a hard case, and which do not.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use super::hard_cases::{HardCase, Variant};
+use crate::figure::{FigureError, Tile, Tiles, Tone};
+use crate::scene::{Orders, Precision, Report, Scene, SceneError};
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// In order, and nothing about it is suspicious.
+    Survives,
+    /// In order, but with these symptoms.
+    Wrong(Vec<String>),
+    /// With this error.
+    BlowsUp(String),
+    /// It did not end within its time.
+    Unfinished,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Survives => f.write_str("survives"),
+            Self::Wrong(symptoms) => write!(f, "survives, but {}", symptoms.join(", ")),
+            Self::BlowsUp(error) => write!(f, "blows up: {error}"),
+            Self::Unfinished => f.write_str("not finished"),
+        }
+    }
+}
+
+/// One variant of one case.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Name of the case.
+    pub case: &'static str,
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// How it ended with the scene's own time step.
+    pub outcome: Outcome,
+    /// Wall-clock time of that run, s.
+    pub wall_s: f64,
+    /// Largest Courant number of [`COURANT_NUMBERS`], counted from the first, that all survive.
+    pub largest_courant: Option<f64>,
+}
+
+/// Courant numbers that are tried, in units of the limits that the method keeps by itself.
+pub const COURANT_NUMBERS: [f64; 5] = [1.0, 1.5, 2.0, 3.0, 4.0];
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The cases.
+    pub cases: Vec<HardCase>,
+    /// No run is begun after this time.
+    pub budget: Duration,
+    /// Number of workers; all cores if `None`.
+    pub workers: Option<usize>,
+}
+
+/// A stability map.
+#[derive(Clone, Debug, Default)]
+pub struct Map {
+    /// What was run.
+    pub entries: Vec<Entry>,
+    /// Case and variant of what was not, for want of time.
+    pub left_out: Vec<(&'static str, &'static str)>,
+}
+
+/// Runs everything in `plan`; `say` hears of every entry.
+///
+/// # Errors
+/// If a case names a scene or parameter that there is not.
+pub fn map(plan: &Plan, mut say: impl FnMut(&Entry)) -> Result<Map, SceneError> {
+    let begun = Instant::now();
+    let mut map = Map::default();
+    for case in &plan.cases {
+        for variant in case.variants {
+            let left = plan.budget.saturating_sub(begun.elapsed());
+            if left.is_zero() {
+                map.left_out.push((case.name, variant.name));
+                continue;
+            }
+            let entry = entry(case, variant, plan.workers, left)?;
+            say(&entry);
+            map.entries.push(entry);
+        }
+    }
+    Ok(map)
+}
+
+fn entry(
+    case: &HardCase,
+    variant: &Variant,
+    workers: Option<usize>,
+    left: Duration,
+) -> Result<Entry, SceneError> {
+    let begun = Instant::now();
+    let (outcome, wall_s) = run(case, variant, COURANT_NUMBERS[0], workers, left)?;
+    let survives = |outcome: &Outcome| matches!(outcome, Outcome::Survives | Outcome::Wrong(_));
+    let mut largest_courant = survives(&outcome).then_some(COURANT_NUMBERS[0]);
+    for &courant in &COURANT_NUMBERS[1..] {
+        let left = left.saturating_sub(begun.elapsed());
+        if largest_courant.is_none() || left.is_zero() {
+            break;
+        }
+        let (longer, _) = run(case, variant, courant, workers, left)?;
+        if !survives(&longer) {
+            break;
+        }
+        largest_courant = Some(courant);
+    }
+    let (case, variant) = (case.name, variant.name);
+    Ok(Entry { case, variant, outcome, wall_s, largest_courant })
+}
+
+/// Outcome and wall-clock time of one run.
+fn run(
+    case: &HardCase,
+    variant: &Variant,
+    courant: f64,
+    workers: Option<usize>,
+    left: Duration,
+) -> Result<(Outcome, f64), SceneError> {
+    let scene = Scene::find(case.scene)?;
+    let courant = courant.to_string();
+    let settings = case.settings.iter().chain(variant.settings).copied();
+    let parameters = scene.set(settings.chain([("courant", courant.as_str())]))?;
+    let prepared = scene.prepare(None, &parameters, Precision::F64)?;
+    let (until, wall_clock) = (Some(case.until), Some(left));
+    let begun = Instant::now();
+    let ended = prepared.run(Orders { until, wall_clock, workers, ..Orders::default() });
+    let wall_s = begun.elapsed().as_secs_f64();
+    let outcome = match ended {
+        Ok(report) if report.time < case.until => Outcome::Unfinished,
+        Ok(report) => judge(case, &report),
+        Err(SceneError::Run(failed)) => Outcome::BlowsUp(failed.to_string()),
+        Err(other) => return Err(other),
+    };
+    Ok((outcome, wall_s))
+}
+
+/// Looks for the signs that something is wrong.
+fn judge(case: &HardCase, report: &Report) -> Outcome {
+    let mut symptoms = Vec::new();
+    for sign in case.signs {
+        match report.results.get(sign.result) {
+            Some(&value) if (sign.least..=sign.most).contains(&value) => {}
+            Some(value) => {
+                symptoms.push(format!("{} ({} = {value:.3})", sign.symptom, sign.result))
+            }
+            None => symptoms.push(format!("no {}", sign.result)),
+        }
+    }
+    if symptoms.is_empty() { Outcome::Survives } else { Outcome::Wrong(symptoms) }
+}
+
+impl Map {
+    /// Writes the map as CSV.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_csv(&self, path: &Path) -> io::Result<()> {
+        let mut text = String::from("case,variant,outcome,largest_courant,wall_s\n");
+        for entry in &self.entries {
+            let courant = entry.largest_courant.map_or_else(String::new, |c| c.to_string());
+            let outcome = entry.outcome.to_string().replace('"', "'");
+            text += &format!(
+                "{},{},\"{outcome}\",{courant},{:.1}\n",
+                entry.case, entry.variant, entry.wall_s
+            );
+        }
+        std::fs::write(path, text)
+    }
+
+    /// Draws the map: a row a case, a tile a variant.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn draw(&self, path: &Path) -> Result<(), FigureError> {
+        let mut tiles = Tiles::new("Stability on hard cases")
+            .legend(Tone::Good, "survives")
+            .legend(Tone::Doubtful, "survives, but wrong")
+            .legend(Tone::Bad, "blows up")
+            .legend(Tone::Unknown, "not finished");
+        for row in self.entries.chunk_by(|a, b| a.case == b.case) {
+            tiles = tiles.row(row[0].case, row.iter().map(tile));
+        }
+        tiles.save(path)
+    }
+}
+
+fn tile(entry: &Entry) -> Tile {
+    let courant = entry.largest_courant.map_or_else(String::new, |c| format!("CFL x {c}"));
+    let (tone, note) = match &entry.outcome {
+        Outcome::Survives => (Tone::Good, courant),
+        Outcome::Wrong(symptoms) => (Tone::Doubtful, symptoms.join(", ")),
+        Outcome::BlowsUp(_) => (Tone::Bad, "blows up".to_owned()),
+        Outcome::Unfinished => (Tone::Unknown, "not finished".to_owned()),
+    };
+    Tile { label: entry.variant.to_owned(), note, tone }
+}
