@@ -4,11 +4,15 @@
 //! takes part is in a folder of the method's.
 
 pub mod cylinder;
+pub mod dam_break;
 pub mod drop;
+pub mod hydrostatic_tank;
 pub mod parameter;
 pub mod report;
 pub mod rotating_patch;
 pub mod sph;
+pub mod standing_wave;
+pub mod tank;
 pub mod taylor_green;
 
 use std::path::PathBuf;
@@ -151,7 +155,7 @@ pub struct Scene {
 }
 
 /// All scenes.
-pub const SCENES: [Scene; 5] = [
+pub const SCENES: [Scene; 8] = [
     Scene {
         name: "cylinder",
         summary: "creeping flow through a square array of cylinders (Morris et al. 1997; 3-D as Holmes et al. 2011)",
@@ -186,6 +190,27 @@ pub const SCENES: [Scene; 5] = [
         methods: &["sph"],
         parameters: sph::rotating_patch::parameters,
         prepare: sph::rotating_patch::prepare,
+    },
+    Scene {
+        name: "dam-break",
+        summary: "collapse of a column of water in a tank (Martin & Moyce 1952)",
+        methods: &["sph"],
+        parameters: sph::dam_break::parameters,
+        prepare: sph::dam_break::prepare,
+    },
+    Scene {
+        name: "hydrostatic-tank",
+        summary: "water at rest in a tank with a free surface",
+        methods: &["sph"],
+        parameters: sph::hydrostatic_tank::parameters,
+        prepare: sph::hydrostatic_tank::prepare,
+    },
+    Scene {
+        name: "standing-wave",
+        summary: "a standing gravity wave in a closed tank (Antuono et al. 2011)",
+        methods: &["sph"],
+        parameters: sph::standing_wave::parameters,
+        prepare: sph::standing_wave::prepare,
     },
 ];
 

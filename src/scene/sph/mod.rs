@@ -1,9 +1,13 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
 pub mod cylinder;
+pub mod dam_break;
 pub mod drop;
 pub mod free_surface;
+pub mod hydrostatic_tank;
 pub mod rotating_patch;
+pub mod standing_wave;
+pub mod tank;
 pub mod taylor_green;
 
 use std::time::Duration;

@@ -1,0 +1,120 @@
+//! The dam break in SPH.
+//!
+//! The defaults: the diffusion of density that knows the gradient of the density against the noise
+//! of impacts, and the artificial viscosity that is usual where water hits walls.
+
+use finegrain_framework::run::{Every, Run, Summary};
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Real, Simulation};
+use finegrain_sph::{Fields, Fluid, Sph};
+
+use super::free_surface::{self, Defaults};
+use super::{Flow, SphScene, tank};
+use crate::scene::dam_break::{self, DamBreak, HEIGHT, WIDTH};
+use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::tank::{DENSITY, GRAVITY};
+use crate::scene::{Precision, Prepared, Report, SceneError};
+
+const DEFAULTS: Defaults = Defaults {
+    mach: 0.1,
+    smoothing_ratio: 1.5,
+    artificial_viscosity: 0.02,
+    density_diffusion: &["antuono", "fourtakas", "molteni-colagrossi", "none"],
+    tension: &["none", "control", "artificial-pressure"],
+    shifting: &["off", "on"],
+};
+
+/// All parameters.
+pub fn parameters() -> Vec<Parameter> {
+    let of_method = free_surface::parameters(&DEFAULTS);
+    [&dam_break::PARAMETERS[..], &of_method, &tank::PARAMETERS].concat()
+}
+
+/// Prepares the scene.
+pub fn prepare(
+    parameters: &Parameters,
+    precision: Precision,
+) -> Result<Box<dyn Prepared>, SceneError> {
+    Ok(match precision {
+        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
+        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
+    })
+}
+
+fn build<T: Real>(
+    parameters: &Parameters,
+    precision: Precision,
+) -> Result<SphScene<T, DamFlow>, SceneError> {
+    let mut scene = DamBreak::new(parameters);
+    let spacing = WIDTH / scene.resolution;
+    scene.tank = tank::fit(scene.tank, spacing);
+    let fluid = tank::water(parameters, scene.speed() / parameters.number("mach"));
+    let scheme = tank::scheme(parameters, scene.speed());
+    let is_filled = |[x, y, _]: [f64; 3]| x < WIDTH && y < HEIGHT;
+    let start = tank::start(&scene.tank, spacing, &scheme, is_filled);
+    let mut sph = Sph::<T>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
+    // Walls take theirs from the water.
+    free_surface::set_pressure(&mut sph, &fluid, &start.positions, |[x, y, z]| {
+        let is_water = x > 0.0 && y > 0.0 && is_filled([x, y, z]);
+        if is_water { DENSITY * scene.pressure([x, y, z]) } else { 0.0 }
+    });
+    let scene_hash = super::scene_hash("dam-break", parameters, precision);
+    Ok(SphScene { sph, flow: DamFlow { scene, fluid }, scene_hash })
+}
+
+struct DamFlow {
+    scene: DamBreak,
+    fluid: Fluid,
+}
+
+impl<T: Real> Flow<T> for DamFlow {
+    /// After the water has hit the far wall.
+    fn end_time(&self) -> f64 {
+        6.0 * self.scene.time()
+    }
+
+    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+        let every = Every::Time(0.02 * self.scene.time());
+        tank::monitor(run, every, fields, self.fluid, mass, self.scene.tank)
+    }
+
+    /// `front`, the largest relative difference from the experiment after the shift `gate_shift`
+    /// in time (in units of `sqrt(a / 2 g)`); `through_walls`, the most particles beyond a wall at
+    /// any time; `energy_growth` and `energy_change` over the potential energy at the beginning.
+    fn judge(
+        &self,
+        report: &mut Report,
+        summary: &Summary,
+        _: &mut Simulation<Cells<T>>,
+        _: &Fields<T>,
+        _: f64,
+    ) {
+        let water = &summary.histories[1];
+        if let Some(front) = water.column("front") {
+            let half = 0.5 * Flow::<T>::spacing(self);
+            let times = water.times().iter().map(|t| t / self.scene.time());
+            let front: Vec<_> = times.zip(front.map(|x| (x + half) / WIDTH)).collect();
+            if let Some(found) = DamBreak::front_error(&front) {
+                report.results.insert("front", found.error);
+                report.errors.insert("front", found.error);
+                report.results.insert("gate_shift", found.shift);
+            }
+        }
+        if let Some(beyond) = water.column("through_walls") {
+            report.result("through_walls", beyond.fold(0.0, f64::max), None);
+        }
+        let scale = 0.5 * DENSITY * GRAVITY * HEIGHT * HEIGHT * WIDTH;
+        if let Some([growth, change]) = free_surface::energy_changes(&summary.histories, scale) {
+            report.result("energy_growth", growth, None);
+            report.result("energy_change", change, None);
+        }
+    }
+
+    fn title(&self) -> String {
+        "Dam break".to_owned()
+    }
+
+    fn spacing(&self) -> f64 {
+        WIDTH / self.scene.resolution
+    }
+}

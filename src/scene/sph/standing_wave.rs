@@ -1,0 +1,144 @@
+//! The standing wave in SPH.
+//!
+//! The defaults: as little artificial viscosity as keeps particles in order, for it is what damps
+//! the wave, and the diffusion of density that knows the gradient of the density.
+
+use finegrain_framework::run::{Every, Run, Summary};
+use finegrain_framework::space::Cells;
+use finegrain_framework::{Real, Simulation};
+use finegrain_sph::{Fields, Fluid, Sph};
+
+use super::free_surface::{self, Defaults};
+use super::{Flow, SphScene, tank};
+use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::standing_wave::{self, DEPTH, StandingWave};
+use crate::scene::tank::GRAVITY;
+use crate::scene::{Precision, Prepared, Report, SceneError};
+
+const DEFAULTS: Defaults = Defaults {
+    mach: 0.1,
+    smoothing_ratio: 2.0,
+    artificial_viscosity: 0.01,
+    density_diffusion: &["antuono", "fourtakas", "molteni-colagrossi", "none"],
+    tension: &["none", "control", "artificial-pressure"],
+    shifting: &["off", "on"],
+};
+
+/// All parameters.
+pub fn parameters() -> Vec<Parameter> {
+    let of_method = free_surface::parameters(&DEFAULTS);
+    [&standing_wave::PARAMETERS[..], &of_method, &tank::PARAMETERS].concat()
+}
+
+/// Prepares the scene.
+pub fn prepare(
+    parameters: &Parameters,
+    precision: Precision,
+) -> Result<Box<dyn Prepared>, SceneError> {
+    Ok(match precision {
+        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
+        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
+    })
+}
+
+fn build<T: Real>(
+    parameters: &Parameters,
+    precision: Precision,
+) -> Result<SphScene<T, WaveFlow>, SceneError> {
+    let mut scene = StandingWave::new(parameters);
+    let spacing = DEPTH / scene.resolution;
+    scene.tank = tank::fit(scene.tank, spacing);
+    scene.wave_number = std::f64::consts::PI / scene.tank.width;
+    let speed = (GRAVITY * DEPTH).sqrt();
+    let fluid = tank::water(parameters, speed / parameters.number("mach"));
+    let scheme = tank::scheme(parameters, speed);
+    let mut start = tank::start(&scene.tank, spacing, &scheme, |x| x[1] < DEPTH);
+    start.velocities = start.positions.iter().map(|&x| scene.velocity(x)).collect();
+    let mut sph = Sph::<T>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
+    free_surface::set_pressure(&mut sph, &fluid, &start.positions, |[x, y, z]| {
+        scene.pressure([x, y.min(DEPTH), z])
+    });
+    let scene_hash = super::scene_hash("standing-wave", parameters, precision);
+    Ok(SphScene { sph, flow: WaveFlow { scene, fluid }, scene_hash })
+}
+
+struct WaveFlow {
+    scene: StandingWave,
+    fluid: Fluid,
+}
+
+impl<T: Real> Flow<T> for WaveFlow {
+    fn end_time(&self) -> f64 {
+        4.1 * self.scene.period()
+    }
+
+    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+        let every = Every::Time(0.01 * self.scene.period());
+        let run = tank::monitor(run, every, fields, self.fluid, mass, self.scene.tank);
+        let (fields, scene) = (fields.clone(), self.scene);
+        // How much of the velocity at the beginning there is: the cosine of the phase.
+        run.monitor("wave", every, ["phase"], move |whole| {
+            let [along, whole] = whole.sum(|near| {
+                let of = |handle| near.state(handle).own().whole();
+                let [x, y] = [0, 1].map(|a| of(fields.position[a]));
+                let [u, v] = [0, 1].map(|a| of(fields.velocity[a]));
+                let mut sums = [0.0; 2];
+                for i in 0..x.len() {
+                    if fields.wall_depth.is_some_and(|depth| of(depth)[i] > T::zero()) {
+                        continue;
+                    }
+                    let mode = scene.velocity([x[i].as_f64(), y[i].as_f64(), 0.0]);
+                    sums[0] += u[i].as_f64() * mode[0] + v[i].as_f64() * mode[1];
+                    sums[1] += mode[0] * mode[0] + mode[1] * mode[1];
+                }
+                sums
+            });
+            [along / whole]
+        })
+    }
+
+    /// `period`, from the moments when the water turns;
+    /// `energy_growth` and `energy_change` over the energy of the wave; `through_walls`, the most
+    /// particles beyond a wall at any time.
+    fn judge(
+        &self,
+        report: &mut Report,
+        summary: &Summary,
+        _: &mut Simulation<Cells<T>>,
+        _: &Fields<T>,
+        _: f64,
+    ) {
+        if let Some([growth, change]) =
+            free_surface::energy_changes(&summary.histories, self.scene.energy())
+        {
+            report.result("energy_growth", growth, None);
+            report.result("energy_change", change, None);
+        }
+        if let Some(beyond) = summary.histories[1].column("through_walls") {
+            report.result("through_walls", beyond.fold(0.0, f64::max), None);
+        }
+        let wave = &summary.histories[2];
+        let Some(phase) = wave.column("phase").map(Iterator::collect::<Vec<f64>>) else {
+            return;
+        };
+        let turns: Vec<f64> = (1..phase.len())
+            .filter(|&k| phase[k - 1] * phase[k] < 0.0)
+            .map(|k| {
+                let (t0, t1) = (wave.times()[k - 1], wave.times()[k]);
+                t0 + (t1 - t0) * phase[k - 1] / (phase[k - 1] - phase[k])
+            })
+            .collect();
+        if let ([first, .., last], 3..) = (&turns[..], turns.len()) {
+            let period = 2.0 * (last - first) / (turns.len() - 1) as f64;
+            report.result("period", period, Some(self.scene.period()));
+        }
+    }
+
+    fn title(&self) -> String {
+        "Standing wave".to_owned()
+    }
+
+    fn spacing(&self) -> f64 {
+        DEPTH / self.scene.resolution
+    }
+}

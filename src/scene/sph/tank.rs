@@ -1,0 +1,143 @@
+//! The tank in SPH: a square lattice of water, and as many layers of it in the walls as particles
+//! see.
+
+use finegrain_framework::Whole;
+use finegrain_framework::run::{Every, Run};
+use finegrain_framework::space::Cells;
+use finegrain_framework::space::cells::Region;
+use finegrain_framework::{Real, State};
+use finegrain_sph::{Fields, Fluid, Physics, Scheme, Slip, Start, WallPressure};
+
+use super::free_surface;
+use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::tank::{DENSITY, GRAVITY, Tank};
+
+/// Parameters that scenes in a tank have besides.
+pub(super) const PARAMETERS: [Parameter; 1] = [Parameter::choice(
+    "walls",
+    &["extrapolated", "evolved"],
+    "pressure in the walls: from the fluid (Adami et al. 2012), or virtual particles that repel by \
+     being compressed (Monaghan 1994)",
+)];
+
+/// Water with a numerical sound speed, m/s.
+pub(super) fn water(parameters: &Parameters, sound_speed: f64) -> Fluid {
+    Fluid {
+        density: DENSITY,
+        sound_speed,
+        kinematic_viscosity: 0.0,
+        state_equation: free_surface::state_equation(parameters),
+    }
+}
+
+/// Gravity and walls without friction.
+pub(super) fn physics(tank: &Tank) -> Physics {
+    Physics {
+        body_acceleration: [0.0, -GRAVITY, 0.0],
+        bodies: tank.walls().map(Into::into).to_vec(),
+        slip: Slip::Free,
+        ..Physics::default()
+    }
+}
+
+/// The scheme that the parameters name, for a flow with this largest speed, m/s.
+pub(super) fn scheme(parameters: &Parameters, speed: f64) -> Scheme {
+    Scheme {
+        wall_pressure: match parameters.choice("walls") {
+            "evolved" => WallPressure::Evolved,
+            _ => WallPressure::Extrapolated,
+        },
+        ..free_surface::scheme(parameters, speed)
+    }
+}
+
+/// The tank with its width a whole number of spacings.
+pub(super) fn fit(tank: Tank, spacing: f64) -> Tank {
+    Tank { width: (tank.width / spacing).round().max(1.0) * spacing, ..tank }
+}
+
+/// Particles at rest in the tank where `is_filled`, and in its walls.
+pub(super) fn start(
+    tank: &Tank,
+    spacing: f64,
+    scheme: &Scheme,
+    is_filled: impl Fn([f64; 3]) -> bool,
+) -> Start {
+    let range = scheme.kernel.support() * scheme.smoothing_ratio * spacing;
+    let layers = (range / spacing).ceil() as i32;
+    let columns = (tank.width / spacing).round() as i32;
+    let rows = (tank.height / spacing).ceil() as i32;
+    let at = |i: i32| (f64::from(i) + 0.5) * spacing;
+    let mut positions = Vec::new();
+    for j in -layers..rows {
+        for i in -layers..columns + layers {
+            let x = [at(i), at(j), 0.0];
+            let is_wall = j < 0 || i < 0 || i >= columns;
+            if is_wall || is_filled(x) {
+                positions.push(x);
+            }
+        }
+    }
+    Start {
+        region: Region {
+            lower: vec![-range; 2],
+            upper: vec![tank.width + range, tank.height],
+            periodic: vec![false; 2],
+        },
+        spacing,
+        particle_volume: spacing * spacing,
+        positions,
+        velocities: Vec::new(),
+    }
+}
+
+/// Number of particles of the water beyond a wall, the largest x among them, and the largest speed.
+pub(super) fn watch<T: Real>(
+    whole: &mut Whole<'_, Cells<T>>,
+    fields: &Fields<T>,
+    tank: &Tank,
+) -> [f64; 3] {
+    let width = T::of(tank.width);
+    let value = |near: &finegrain_framework::Near<'_, Cells<T>>, handle: State<T>, i: usize| {
+        near.state(handle).own().whole()[i]
+    };
+    let is_water = |near: &finegrain_framework::Near<'_, Cells<T>>, i: usize| {
+        fields.wall_depth.is_none_or(|depth| value(near, depth, i) == T::zero())
+    };
+    let [beyond] = whole.sum(|near| {
+        let count = (0..near.spans()[0].len()).filter(|&i| {
+            let x = fields.position.iter().map(|&p| value(near, p, i));
+            let [x, y] = [x.clone().next(), x.clone().nth(1)].map(Option::unwrap_or_default);
+            is_water(near, i) && (x < T::zero() || x > width || y < T::zero())
+        });
+        [count.count() as f64]
+    });
+    let [front, squared] = whole.max(|near| {
+        let mut most = [f64::NEG_INFINITY, 0.0];
+        for i in (0..near.spans()[0].len()).filter(|&i| is_water(near, i)) {
+            let squared: f64 =
+                fields.velocity.iter().map(|&v| value(near, v, i).as_f64().powi(2)).sum();
+            most[0] = most[0].max(value(near, fields.position[0], i).as_f64());
+            most[1] = most[1].max(squared);
+        }
+        most
+    });
+    [beyond, front, squared.sqrt()]
+}
+
+/// Monitors energy, and what [`watch`] sees.
+pub(super) fn monitor<T: Real>(
+    run: Run<Cells<T>>,
+    every: Every,
+    fields: &Fields<T>,
+    fluid: Fluid,
+    mass: f64,
+    tank: Tank,
+) -> Run<Cells<T>> {
+    let run =
+        free_surface::monitor_energy(run, every, fields, fluid, mass, |[_, y, _]| GRAVITY * y);
+    let fields = fields.clone();
+    run.monitor("water", every, ["through_walls", "front", "largest_speed"], move |whole| {
+        watch(whole, &fields, &tank)
+    })
+}
