@@ -140,3 +140,22 @@ const FREE_SURFACE: &[Variant] = &[
 const fn variant(name: &'static str, settings: &'static [(&'static str, &'static str)]) -> Variant {
     Variant { name, settings }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn every_variant_sets_what_its_scene_has() {
+        for case in HARD_CASES {
+            let scene = Scene::find(case.scene).unwrap();
+            for variant in case.variants {
+                let settings = case.settings.iter().chain(variant.settings).copied();
+                if let Err(why) = scene.set(settings) {
+                    panic!("{}, {}: {why}", case.name, variant.name);
+                }
+            }
+        }
+    }
+}

@@ -58,8 +58,8 @@ fn build<T: Real>(
         let is_water = x > 0.0 && y > 0.0 && is_filled([x, y, z]);
         if is_water { DENSITY * scene.pressure([x, y, z]) } else { 0.0 }
     });
-    let scene_hash = super::scene_hash("dam-break", parameters, precision);
-    Ok(SphScene { sph, flow: DamFlow { scene, fluid }, scene_hash })
+    let description = super::description("dam-break", parameters, precision);
+    Ok(SphScene { sph, flow: DamFlow { scene, fluid }, description })
 }
 
 struct DamFlow {

@@ -55,8 +55,8 @@ fn build<T: Real>(
     free_surface::set_pressure(&mut sph, &fluid, &start.positions, |x| {
         scene.pressure(x[1].min(DEPTH))
     });
-    let scene_hash = super::scene_hash("hydrostatic-tank", parameters, precision);
-    Ok(SphScene { sph, flow: TankFlow { scene, fluid }, scene_hash })
+    let description = super::description("hydrostatic-tank", parameters, precision);
+    Ok(SphScene { sph, flow: TankFlow { scene, fluid }, description })
 }
 
 struct TankFlow {

@@ -58,8 +58,8 @@ fn build<T: Real>(
     free_surface::set_pressure(&mut sph, &fluid, &start.positions, |[x, y, z]| {
         scene.pressure([x, y.min(DEPTH), z])
     });
-    let scene_hash = super::scene_hash("standing-wave", parameters, precision);
-    Ok(SphScene { sph, flow: WaveFlow { scene, fluid }, scene_hash })
+    let description = super::description("standing-wave", parameters, precision);
+    Ok(SphScene { sph, flow: WaveFlow { scene, fluid }, description })
 }
 
 struct WaveFlow {
