@@ -18,7 +18,15 @@ use crate::figure::{Axis, Field};
 const PARAMETERS: [Parameter; 7] = [
     Parameter::choice(
         "kernel",
-        &["gaussian", "cubic-spline", "quartic-spline", "quintic-spline", "wendland-c2"],
+        &[
+            "gaussian",
+            "cubic-spline",
+            "quartic-spline",
+            "quintic-spline",
+            "wendland-c2",
+            "wendland-c4",
+            "wendland-c6",
+        ],
         "smoothing kernel",
     ),
     Parameter::number("smoothing_ratio", 1.0, [0.8, 3.0], "", "smoothing length over spacing"),
@@ -51,6 +59,8 @@ fn scheme(parameters: &Parameters) -> Scheme {
             "quartic-spline" => SmoothingFunction::QuarticSpline,
             "quintic-spline" => SmoothingFunction::QuinticSpline,
             "wendland-c2" => SmoothingFunction::WendlandC2,
+            "wendland-c4" => SmoothingFunction::WendlandC4,
+            "wendland-c6" => SmoothingFunction::WendlandC6,
             _ => SmoothingFunction::Gaussian,
         },
         smoothing_ratio: parameters.number("smoothing_ratio"),
