@@ -4,8 +4,11 @@
 //! takes part is in a folder of the method's.
 
 pub mod cylinder;
+pub mod noh;
 pub mod parameter;
 pub mod report;
+pub mod riemann;
+pub mod sod;
 pub mod sph;
 pub mod taylor_green;
 
@@ -132,7 +135,7 @@ pub struct Scene {
 }
 
 /// All scenes.
-pub const SCENES: [Scene; 2] = [
+pub const SCENES: [Scene; 4] = [
     Scene {
         name: "cylinder",
         summary: "creeping flow through a square array of cylinders (Morris et al. 1997; 3-D as Holmes et al. 2011)",
@@ -146,6 +149,20 @@ pub const SCENES: [Scene; 2] = [
         methods: &["sph"],
         parameters: sph::taylor_green::parameters,
         prepare: sph::taylor_green::prepare,
+    },
+    Scene {
+        name: "sod",
+        summary: "shock tube of an ideal gas (Sod 1978), 1-D or 2-D",
+        methods: &["sph"],
+        parameters: sph::sod::parameters,
+        prepare: sph::sod::prepare,
+    },
+    Scene {
+        name: "noh",
+        summary: "implosion of a cold gas with an infinitely strong shock (Noh 1987), 1-D or 2-D",
+        methods: &["sph"],
+        parameters: sph::noh::parameters,
+        prepare: sph::noh::prepare,
     },
 ];
 

@@ -16,11 +16,19 @@ pub(crate) enum Quantity {
     Acceleration(usize),
     DensityRate,
     EnergyRate,
+    Energy,
+    Pressure,
+    SoundSpeed,
+    SmoothingLength,
+    /// `Omega` of Springel & Hernquist (2002).
+    GradH,
+    /// Fastest signal between a particle and its neighbours.
+    SignalSpeed,
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 17;
+    pub const COUNT: usize = 23;
 
     /// Its place among all.
     #[inline(always)]
@@ -34,6 +42,12 @@ impl Quantity {
             Self::Acceleration(a) => 12 + a,
             Self::DensityRate => 15,
             Self::EnergyRate => 16,
+            Self::Energy => 17,
+            Self::Pressure => 18,
+            Self::SoundSpeed => 19,
+            Self::SmoothingLength => 20,
+            Self::GradH => 21,
+            Self::SignalSpeed => 22,
         }
     }
 

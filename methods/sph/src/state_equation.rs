@@ -9,7 +9,7 @@ use crate::fields::Fields;
 use crate::physics::Fluid;
 use crate::quantity::Quantity;
 
-/// Pressure as a function of density.
+/// Pressure as a function of density, and for a gas of energy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "kind", deny_unknown_fields)]
 pub enum StateEquation {
@@ -26,10 +26,16 @@ pub enum StateEquation {
         /// Background pressure `p_b` in units of `c^2 rho_0`.
         background: f64,
     },
+    /// `p = (gamma - 1) rho e`, with the specific internal energy `e`.
+    IdealGas {
+        /// Ratio gamma of the specific heats.
+        heat_ratio: f64,
+    },
 }
 
 impl StateEquation {
-    /// Pressure, Pa, at `density`, for a fluid with reference density and sound speed.
+    /// Pressure, Pa, at `density`, for a fluid with reference density and sound speed; of an ideal
+    /// gas as it has it at the temperature at which that is its sound speed.
     #[inline(always)]
     pub fn pressure<T: Real>(&self, density: T, reference_density: T, sound_speed: T) -> T {
         let stiffness = sound_speed * sound_speed * reference_density;
@@ -40,6 +46,7 @@ impl StateEquation {
                 let gamma = T::of(exponent);
                 stiffness * ((ratio.powf(gamma) - T::one()) / gamma + T::of(background))
             }
+            Self::IdealGas { heat_ratio } => stiffness * ratio / T::of(heat_ratio),
         }
     }
 }

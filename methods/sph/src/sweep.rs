@@ -8,7 +8,7 @@ use finegrain_framework::{
 };
 
 use crate::fields::Fields;
-use crate::kernel::Kernel;
+use crate::kernel::adaptive::Kernels;
 use crate::neighbourhood::{Candidates, Gathered, Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 use crate::term::{AnyTerm, Term, Work};
@@ -18,7 +18,7 @@ use crate::wall::{Extrapolation, NoSlip};
 #[derive(Clone, Debug)]
 pub(crate) struct Sweep<T, const D: usize> {
     name: String,
-    kernel: Kernel<T>,
+    kernels: Kernels<T, D>,
     terms: Vec<AnyTerm<T>>,
     gathered: Gathered<T>,
     outputs: Vec<(Quantity, Rate<T>)>,
@@ -31,7 +31,7 @@ pub(crate) struct Sweep<T, const D: usize> {
 impl<T: Real, const D: usize> Sweep<T, D> {
     /// A sweep of `terms`, with the columns that they need.
     pub fn new(
-        kernel: Kernel<T>,
+        kernels: Kernels<T, D>,
         terms: Vec<AnyTerm<T>>,
         fields: &Fields<T>,
         body_acceleration: [T; D],
@@ -48,7 +48,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         let extrapolates = terms.iter().any(Term::sees_velocity_in_bodies);
         Self {
             name: format!("sph {}", names.join(", ")),
-            kernel,
+            kernels,
             gathered: Gathered::new(fields, reads.collect(), uses_kernel),
             terms,
             outputs,
@@ -69,11 +69,17 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         let Scratch { candidates, neighbours, work } = scratch;
         let first = near.spans()[0].start;
         for cell in block.cells() {
-            candidates.collect(&self.gathered, near, block, cell, self.kernel.support_radius());
+            candidates.collect(&self.gathered, near, block, cell, self.kernels.range());
+            let longest = match self.kernels {
+                Kernels::Uniform(_) => T::zero(),
+                Kernels::Adaptive(_) => {
+                    candidates.largest(&self.gathered, Quantity::SmoothingLength)
+                }
+            };
             for k in 0..cell.span.len() {
                 let mut particle = candidates.particle(&self.gathered, k);
                 particle.no_slip = self.no_slip(&particle);
-                neighbours.gather(&self.gathered, candidates, &particle, &self.kernel);
+                neighbours.gather(&self.gathered, candidates, &particle, &self.kernels, longest);
                 let sums = self.sum(&particle, neighbours, work);
                 for (column, &(quantity, _)) in written.iter_mut().zip(&self.outputs) {
                     column[cell.span.start - first + k] = sums[quantity];

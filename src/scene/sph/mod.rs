@@ -1,6 +1,9 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
 pub mod cylinder;
+mod gas;
+pub mod noh;
+pub mod sod;
 pub mod taylor_green;
 
 use std::time::Duration;
@@ -11,6 +14,7 @@ use finegrain_framework::{Integrator, Real, Simulation, State};
 use finegrain_sph::{Fields, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity};
 
 use super::parameter::{Parameter, Parameters};
+use super::report::Picture;
 use super::{Orders, Prepared, Report, SceneError};
 use crate::figure::{Axis, Field};
 
@@ -54,19 +58,23 @@ const PARAMETERS: [Parameter; 7] = [
 /// What the parameters say about the discretisation.
 fn scheme(parameters: &Parameters) -> Scheme {
     Scheme {
-        kernel: match parameters.choice("kernel") {
-            "cubic-spline" => SmoothingFunction::CubicSpline,
-            "quartic-spline" => SmoothingFunction::QuarticSpline,
-            "quintic-spline" => SmoothingFunction::QuinticSpline,
-            "wendland-c2" => SmoothingFunction::WendlandC2,
-            "wendland-c4" => SmoothingFunction::WendlandC4,
-            "wendland-c6" => SmoothingFunction::WendlandC6,
-            _ => SmoothingFunction::Gaussian,
-        },
+        kernel: kernel(parameters),
         smoothing_ratio: parameters.number("smoothing_ratio"),
         integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
         courant_number: parameters.number("courant"),
         ..Scheme::default()
+    }
+}
+
+fn kernel(parameters: &Parameters) -> SmoothingFunction {
+    match parameters.choice("kernel") {
+        "cubic-spline" => SmoothingFunction::CubicSpline,
+        "quartic-spline" => SmoothingFunction::QuarticSpline,
+        "quintic-spline" => SmoothingFunction::QuinticSpline,
+        "wendland-c2" => SmoothingFunction::WendlandC2,
+        "wendland-c4" => SmoothingFunction::WendlandC4,
+        "wendland-c6" => SmoothingFunction::WendlandC6,
+        _ => SmoothingFunction::Gaussian,
     }
 }
 
@@ -104,6 +112,11 @@ trait Flow<T: Real> {
 
     /// Spacing of the particles, m.
     fn spacing(&self) -> f64;
+
+    /// The picture of the end: by default of the speed.
+    fn picture(&self, simulation: &Simulation<Cells<T>>, fields: &Fields<T>) -> Picture {
+        picture(simulation, fields, self.title(), self.spacing()).into()
+    }
 }
 
 /// A scene with its SPH model.
@@ -140,6 +153,9 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
             if fields.wall_depth.is_some() {
                 dump = dump.scalar("wall_depth");
             }
+            if fields.energy.is_some() {
+                dump = dump.scalar("energy");
+            }
             run = run.out(out).dump(dump);
             if let Some(steps) = orders.checkpoint_every {
                 run = run.checkpoint(Every::Steps(steps), 3);
@@ -158,7 +174,7 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
         let mut report = Report::new(&summary, points);
         let simulation = run.simulation_mut();
         flow.judge(&mut report, &summary, simulation, &fields, particle_mass);
-        report.picture = Some(picture(simulation, &fields, flow.title(), flow.spacing()));
+        report.picture = Some(flow.picture(simulation, &fields));
         Ok(report)
     }
 }

@@ -86,6 +86,9 @@ macro_rules! with_profile {
     };
 }
 
+// After the macro, which it uses.
+pub(crate) mod adaptive;
+
 impl SmoothingFunction {
     /// `kappa`: the radius of the support in smoothing lengths.
     pub fn support(self) -> f64 {

@@ -3,9 +3,12 @@
 //! A term is a sum over the neighbours of a particle. It reads gathered lanes and adds to the
 //! particle's sums; the files read like their equations.
 
+pub(crate) mod conductivity;
 pub(crate) mod continuity;
 pub(crate) mod energy;
+pub(crate) mod gas_pressure;
 pub(crate) mod momentum;
+pub(crate) mod shock_viscosity;
 pub(crate) mod strain_rate;
 pub(crate) mod viscosity;
 
@@ -14,9 +17,12 @@ use finegrain_framework::Real;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 
+use conductivity::Conductivity;
 use continuity::Continuity;
 use energy::Energy;
+use gas_pressure::GasPressure;
 use momentum::{PressureGradient, StressDivergence};
+use shock_viscosity::ShockViscosity;
 use strain_rate::StrainRate;
 use viscosity::MorrisViscosity;
 
@@ -116,7 +122,17 @@ macro_rules! terms {
     };
 }
 
-terms!(Continuity, StrainRate, PressureGradient, StressDivergence, MorrisViscosity, Energy);
+terms!(
+    Continuity,
+    StrainRate,
+    PressureGradient,
+    StressDivergence,
+    MorrisViscosity,
+    Energy,
+    GasPressure,
+    ShockViscosity,
+    Conductivity,
+);
 
 /// Lanes that a term works with: a weight for each neighbour.
 #[derive(Clone, Debug, Default)]
