@@ -10,6 +10,9 @@ pub mod hydrostatic_tank;
 pub mod parameter;
 pub mod report;
 pub mod rotating_patch;
+pub mod noh;
+pub mod riemann;
+pub mod sod;
 pub mod sph;
 pub mod standing_wave;
 pub mod tank;
@@ -155,7 +158,7 @@ pub struct Scene {
 }
 
 /// All scenes.
-pub const SCENES: [Scene; 8] = [
+pub const SCENES: &[Scene] = &[
     Scene {
         name: "cylinder",
         summary: "creeping flow through a square array of cylinders (Morris et al. 1997; 3-D as Holmes et al. 2011)",
@@ -212,6 +215,20 @@ pub const SCENES: [Scene; 8] = [
         parameters: sph::standing_wave::parameters,
         prepare: sph::standing_wave::prepare,
     },
+    Scene {
+        name: "sod",
+        summary: "shock tube of an ideal gas (Sod 1978), 1-D or 2-D",
+        methods: &["sph"],
+        parameters: sph::sod::parameters,
+        prepare: sph::sod::prepare,
+    },
+    Scene {
+        name: "noh",
+        summary: "implosion of a cold gas with an infinitely strong shock (Noh 1987), 1-D or 2-D",
+        methods: &["sph"],
+        parameters: sph::noh::parameters,
+        prepare: sph::noh::prepare,
+    },
 ];
 
 impl Scene {
@@ -220,7 +237,7 @@ impl Scene {
     /// # Errors
     /// If there is none; the message lists them.
     pub fn find(name: &str) -> Result<&'static Self, SceneError> {
-        static ALL: &[Scene] = &SCENES;
+        static ALL: &[Scene] = SCENES;
         ALL.iter().find(|s| s.name == name).ok_or_else(|| {
             let known: Vec<_> = ALL.iter().map(|s| s.name).collect();
             let near = parameter::nearest(name, &known);

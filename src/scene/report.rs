@@ -1,11 +1,45 @@
 //! What a run of a scene comes to.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use finegrain_framework::run::{Stopped, Summary};
 
-use crate::figure::Field;
+use crate::figure::{Chart, Field, FigureError};
+
+/// What a run looks like in the end.
+#[derive(Clone, Debug)]
+pub enum Picture {
+    /// A field in the plane.
+    Field(Field),
+    /// A profile along a line.
+    Chart(Chart),
+}
+
+impl Picture {
+    /// Draws it and writes it as a PNG file.
+    ///
+    /// # Errors
+    /// If there is nothing to show or the file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), FigureError> {
+        match self {
+            Self::Field(field) => field.save(path),
+            Self::Chart(chart) => chart.save(path),
+        }
+    }
+}
+
+impl From<Field> for Picture {
+    fn from(field: Field) -> Self {
+        Self::Field(field)
+    }
+}
+
+impl From<Chart> for Picture {
+    fn from(chart: Chart) -> Self {
+        Self::Chart(chart)
+    }
+}
 
 /// Result of a run.
 #[derive(Clone, Debug)]
@@ -35,8 +69,8 @@ pub struct Report {
     pub notes: Vec<String>,
     /// Files written.
     pub files: Vec<PathBuf>,
-    /// The final field.
-    pub picture: Option<Field>,
+    /// The end.
+    pub picture: Option<Picture>,
 }
 
 impl Report {

@@ -24,6 +24,14 @@ pub enum SphError {
         /// Number of velocities.
         velocities: usize,
     },
+    /// Choices that do not go together.
+    #[error("{choice} needs {needs}")]
+    Incompatible {
+        /// What was chosen.
+        choice: &'static str,
+        /// What it needs.
+        needs: &'static str,
+    },
     /// A body makes no sense.
     #[error("body {number}: {cause}")]
     Body {

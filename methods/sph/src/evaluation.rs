@@ -1,8 +1,8 @@
 //! The order in which the pieces of a model are evaluated: it follows from what they read and
 //! write.
 //!
-//! A piece is a term (a sum over neighbours) or an update (of a particle's own quantities). Terms
-//! that can are summed in one sweep over all pairs. A piece comes after those that write what it
+//! A piece is a term (a sum over neighbours), an update (of a particle's own quantities) or a stage
+//! that sums over neighbours in its own way. Terms that can are summed in one sweep over all pairs. A piece comes after those that write what it
 //! reads, and all terms that add to one quantity are in one sweep.
 
 use finegrain_framework::space::Cells;
@@ -16,6 +16,15 @@ use crate::term::{AnyTerm, Term};
 pub(crate) enum Piece<T: Real> {
     Term(AnyTerm<T>),
     Update(Update<T>),
+    Alone(Alone<T>),
+}
+
+/// A rate stage that is not made of terms.
+pub(crate) struct Alone<T: Real> {
+    pub reads: Vec<Quantity>,
+    pub writes: Vec<Quantity>,
+    /// Makes it once the columns are known.
+    pub stage: Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>,
 }
 
 /// Makes a stage from the columns of a model.
@@ -37,6 +46,7 @@ impl<T: Real> Piece<T> {
         match self {
             Self::Term(term) => term.reads(dims),
             Self::Update(update) => update.reads.clone(),
+            Self::Alone(alone) => alone.reads.clone(),
         }
     }
 
@@ -45,6 +55,7 @@ impl<T: Real> Piece<T> {
         match self {
             Self::Term(term) => term.writes(dims),
             Self::Update(update) => update.writes.clone(),
+            Self::Alone(alone) => alone.writes.clone(),
         }
     }
 
@@ -77,7 +88,7 @@ impl<T: Real> Piece<T> {
 
     /// The first slot from `slot` on that it may take: updates take the even ones, sweeps the odd.
     fn from(&self, slot: usize) -> usize {
-        slot + usize::from((slot % 2 == 1) != matches!(self, Self::Term(_)))
+        slot + usize::from((slot % 2 == 1) != !matches!(self, Self::Update(_)))
     }
 }
 
@@ -157,6 +168,7 @@ mod tests {
             Piece::Term(AnyTerm::StressDivergence(_)) => "stress",
             Piece::Term(_) => "term",
             Piece::Update(_) => "update",
+            Piece::Alone(_) => "alone",
         };
         slots.iter().map(|slot| slot.iter().map(name).collect()).collect()
     }

@@ -30,10 +30,21 @@ pub struct Fields<T> {
     pub volume: State<T>,
     /// `p / rho^2` of the present evaluation.
     pub pressure_term: State<T>,
+    /// Pressure, Pa, of the present evaluation; only if a term uses it.
+    pub pressure: Option<State<T>>,
+    /// Sound speed of each particle, m/s, of the present evaluation; only for gas.
+    pub sound_speed: Option<State<T>>,
+    /// Smoothing length of each particle, m; only where it follows the density.
+    pub smoothing_length: Option<Rate<T>>,
+    /// `Omega`, by which forces of varying smoothing lengths differ; only where they vary.
+    pub grad_h: Option<Rate<T>>,
+    /// Speed of the fastest signal between a particle and its neighbours, m/s; only with artificial
+    /// viscosity for shocks.
+    pub signal_speed: Option<Rate<T>>,
     /// Acceleration, m/s^2.
     pub acceleration: Vec<Rate<T>>,
-    /// Rate of change of the density.
-    pub density_rate: Rate<T>,
+    /// Rate of change of the density; only where density evolves.
+    pub density_rate: Option<Rate<T>>,
     /// Rate of change of the energy.
     pub energy_rate: Option<Rate<T>>,
     /// `mu epsilon / rho^2`, the components xx, (xy, yy, (xz, yz, zz)); only with the viscosity in
@@ -96,11 +107,17 @@ impl<T: Real> Fields<T> {
             identity: columns.state("identity"),
             volume: columns.register("volume"),
             pressure_term: columns.register("pressure_term"),
+            pressure: used(Quantity::Pressure).then(|| columns.register("pressure")),
+            sound_speed: used(Quantity::SoundSpeed).then(|| columns.register("sound_speed")),
+            smoothing_length: used(Quantity::SmoothingLength)
+                .then(|| columns.rate("smoothing_length")),
+            grad_h: used(Quantity::GradH).then(|| columns.rate("grad_h")),
+            signal_speed: used(Quantity::SignalSpeed).then(|| columns.rate("signal_speed")),
             acceleration: directions
                 .iter()
                 .map(|d| columns.rate(&name("acceleration", d)))
                 .collect(),
-            density_rate: columns.rate("density_rate"),
+            density_rate: used(Quantity::DensityRate).then(|| columns.rate("density_rate")),
             energy_rate: used(Quantity::EnergyRate).then(|| columns.rate("energy_rate")),
             stress_term: Quantity::symmetric(Quantity::StressTerm, dims)
                 .filter(|&stress| used(stress))
@@ -137,7 +154,7 @@ impl<T: Real> Fields<T> {
             Quantity::WallDepth => self.wall_depth.map(Column::State),
             Quantity::StressTerm(k) => self.stress_term.get(k).copied().map(Column::Rate),
             Quantity::Acceleration(a) => Some(Column::Rate(self.acceleration[a])),
-            Quantity::DensityRate => Some(Column::Rate(self.density_rate)),
+            Quantity::DensityRate => self.density_rate.map(Column::Rate),
             Quantity::EnergyRate => self.energy_rate.map(Column::Rate),
             Quantity::SurfaceVelocity(a) => {
                 self.surface_velocity.get(a).copied().map(Column::State)
@@ -155,6 +172,12 @@ impl<T: Real> Fields<T> {
             Quantity::Correction(k) => self.correction.get(k).copied().map(Column::State),
             Quantity::Fullness => self.fullness.map(Column::State),
             Quantity::Drift(a) => self.drift.get(a).copied().map(Column::Rate),
+            Quantity::Energy => self.energy.map(Column::State),
+            Quantity::Pressure => self.pressure.map(Column::State),
+            Quantity::SoundSpeed => self.sound_speed.map(Column::State),
+            Quantity::SmoothingLength => self.smoothing_length.map(Column::Rate),
+            Quantity::GradH => self.grad_h.map(Column::Rate),
+            Quantity::SignalSpeed => self.signal_speed.map(Column::Rate),
         }
     }
 

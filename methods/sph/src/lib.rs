@@ -2,7 +2,8 @@
 //!
 //! The formulation of Holmes, Williams & Tilke (2011), composed of terms: conservation of mass
 //! (I.1), momentum (I.2) with pressure and viscosity, and energy (I.3) where a scene asks for it;
-//! an equation of state for weakly compressible flow; bodies filled with particles at rest. What a
+//! an equation of state for weakly compressible flow; gas with shocks and smoothing lengths that
+//! follow its density; bodies filled with particles at rest. What a
 //! scene does not name has no columns and no loops. 1-D, 2-D and 3-D, `f32` and `f64`.
 //!
 //! | file | holds |
@@ -57,18 +58,22 @@ pub mod body;
 pub mod dimension;
 pub mod error;
 pub mod fields;
+pub mod gas;
 pub mod kernel;
 pub mod measure;
 pub mod model;
 pub mod packing;
 pub mod physics;
 pub mod scheme;
+pub mod smoothing;
 pub mod stabilisation;
 pub mod start;
 pub mod state_equation;
 
+mod adaptive_density;
 mod correction;
 mod evaluation;
+mod gas_pacing;
 mod neighbourhood;
 mod pacing;
 mod quantity;
@@ -82,11 +87,13 @@ pub use body::{Body, Slip, WallPressure, WallVelocity};
 pub use dimension::Dimension;
 pub use error::SphError;
 pub use fields::Fields;
+pub use gas::ShockCapturing;
 pub use kernel::{Kernel, SmoothingFunction};
 pub use model::Sph;
 pub use packing::{Lattice, Packing};
 pub use physics::{Fluid, Physics, Viscosity};
 pub use scheme::Scheme;
+pub use smoothing::Smoothing;
 pub use stabilisation::{ArtificialViscosity, DensityDiffusion, DiffusionForm, Stabilisation};
 pub use start::Start;
 pub use state_equation::StateEquation;

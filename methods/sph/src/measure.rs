@@ -19,6 +19,8 @@ pub struct Totals {
     pub momentum: [f64; 3],
     /// Kinetic energy, J.
     pub kinetic_energy: f64,
+    /// Internal energy, J; 0 without energy equation.
+    pub internal_energy: f64,
 }
 
 /// Sums up the fluid.
@@ -30,7 +32,8 @@ pub fn totals<T: Real>(
     let sums = whole.sum(|near| {
         let density = near.state(fields.density).own().whole();
         let depth = fields.wall_depth.map(|d| near.state(d).own().whole());
-        let mut sums = [0.0; 9];
+        let energy = fields.energy.map(|e| near.state(e).own().whole());
+        let mut sums = [0.0; 10];
         for i in 0..density.len() {
             if depth.is_some_and(|d| d[i] > T::zero()) {
                 continue;
@@ -38,6 +41,7 @@ pub fn totals<T: Real>(
             let volume = particle_mass / density[i].as_f64();
             sums[0] += volume;
             sums[1] += 1.0;
+            sums[9] += energy.map_or(0.0, |e| particle_mass * e[i].as_f64());
             for (a, &v) in fields.velocity.iter().enumerate() {
                 let v = near.state(v).own().whole()[i].as_f64();
                 sums[2 + a] += volume * v;
@@ -53,6 +57,7 @@ pub fn totals<T: Real>(
         flow: [sums[2], sums[3], sums[4]],
         momentum: [sums[5], sums[6], sums[7]],
         kinetic_energy: sums[8],
+        internal_energy: sums[9],
     }
 }
 

@@ -2,19 +2,23 @@
 
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::CellsOptions;
-use finegrain_framework::{Columns, Evolution, Handle, Model, Real, Stage};
+use finegrain_framework::{Columns, Evolution, Handle, Model, Pacing, Real, Stage};
 
 use crate::body::{Body, Slip, WallPressure, WallVelocity};
 use crate::dimension::Dimension;
 use crate::error::SphError;
 use crate::evaluation::{Piece, slots};
 use crate::fields::Fields;
+use crate::gas;
+use crate::gas_pacing::GasPacing;
 use crate::kernel::Kernel;
+use crate::kernel::adaptive::{AdaptiveKernel, Kernels};
 use crate::pacing::{Sort, TimeStepControl};
 use crate::physics::{Fluid, Physics, Viscosity};
 use crate::scheme::Scheme;
+use crate::smoothing::Smoothing;
 use crate::start::Start;
-use crate::state_equation::Thermodynamics;
+use crate::state_equation::{StateEquation, Thermodynamics};
 use crate::sweep::Sweep;
 use crate::term::continuity::Continuity;
 use crate::term::energy::Energy;
@@ -51,6 +55,7 @@ impl<T: Real> Sph<T> {
         fluid.check()?;
         physics.check()?;
         scheme.check()?;
+        gas::check(fluid, physics, scheme)?;
         match start.region.lower.len() {
             1 => build::<T, 1>(start, fluid, physics, scheme, Dimension::One),
             2 => build::<T, 2>(start, fluid, physics, scheme, Dimension::Two),
@@ -140,18 +145,30 @@ fn build<T: Real, const D: usize>(
     dimension: Dimension,
 ) -> Result<Sph<T>, SphError> {
     let smoothing_length = scheme.smoothing_ratio * start.spacing;
-    let kernel = Kernel::new(scheme.kernel, dimension, T::of(smoothing_length));
     let particle_mass = fluid.density * start.particle_volume;
-    let mut pieces = pieces::<T>(fluid, physics, scheme, &kernel, particle_mass);
-    pieces.extend(scheme.stabilisation.pieces(
-        fluid,
-        physics,
-        &kernel,
-        start.spacing,
-        particle_mass,
-        D,
-    ));
-    let range = kernel.support_radius().as_f64();
+    let (kernels, pieces) = match (scheme.smoothing, fluid.state_equation) {
+        (Smoothing::Adaptive { longest }, StateEquation::IdealGas { heat_ratio }) => {
+            let kernel = AdaptiveKernel::<T, D>::new(scheme.kernel, T::of(longest));
+            let (mass, ratio) = (T::of(particle_mass), T::of(scheme.smoothing_ratio));
+            let heat_ratio = T::of(heat_ratio);
+            let pieces = gas::pieces(kernel, mass, ratio, heat_ratio, physics.shock_capturing);
+            (Kernels::Adaptive(kernel), pieces)
+        }
+        _ => {
+            let kernel = Kernel::new(scheme.kernel, dimension, T::of(smoothing_length));
+            let mut pieces = pieces::<T>(fluid, physics, scheme, &kernel, particle_mass);
+            pieces.extend(scheme.stabilisation.pieces(
+                fluid,
+                physics,
+                &kernel,
+                start.spacing,
+                particle_mass,
+                D,
+            ));
+            (Kernels::Uniform(kernel), pieces)
+        }
+    };
+    let range = kernels.range().as_f64();
     let walls = Walls::new(&physics.bodies, &start.region, range);
 
     let mut columns = Columns::new(start.positions.len());
@@ -184,11 +201,12 @@ fn build<T: Real, const D: usize>(
             match piece {
                 Piece::Term(term) => terms.push(term),
                 Piece::Update(update) => evaluation.push((update.stage)(&fields)),
+                Piece::Alone(alone) => evaluation.push((alone.stage)(&fields)),
             }
         }
         if !terms.is_empty() {
             evaluation.push(Stage::rate(Sweep::<T, D>::new(
-                kernel,
+                kernels,
                 terms,
                 &fields,
                 body_acceleration,
@@ -199,11 +217,14 @@ fn build<T: Real, const D: usize>(
         }
     }
 
-    // The time step follows from the last accelerations: they must survive a restart.
-    for &acceleration in &fields.acceleration {
-        columns.keep(acceleration.id());
+    // The time step follows from the last accelerations and signals: they must survive a restart.
+    for &rate in fields.acceleration.iter().chain(&fields.signal_speed) {
+        columns.keep(rate.id());
     }
-    let mut evolution = Evolution::new().with(fields.density, fields.density_rate);
+    let mut evolution = Evolution::new();
+    if let Some(rate) = fields.density_rate {
+        evolution = evolution.with(fields.density, rate);
+    }
     for a in 0..D {
         evolution = evolution
             .with_motion(fields.position[a], fields.velocity[a])
@@ -218,14 +239,19 @@ fn build<T: Real, const D: usize>(
     }
     let plan = scheme.integrator.plan(&mut columns, &evolution, &evaluation);
     let magnitude = physics.body_acceleration.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let pacing = TimeStepControl {
-        fields: fields.clone(),
-        smoothing_length,
-        sound_speed: fluid.sound_speed,
-        kinematic_viscosity: physics.viscosity.map_or(0.0, |_| fluid.kinematic_viscosity),
-        body_acceleration: magnitude,
-        courant_number: scheme.courant_number,
-        most_steps: 20,
+    let pacing: Box<dyn Pacing<Cells<T>>> = if scheme.smoothing.is_adaptive() {
+        let approach = physics.shock_capturing.map_or(0.0, |shocks| shocks.approach);
+        Box::new(GasPacing::new(&fields, fluid, scheme, particle_mass, approach, magnitude))
+    } else {
+        Box::new(TimeStepControl {
+            fields: fields.clone(),
+            smoothing_length,
+            sound_speed: fluid.sound_speed,
+            kinematic_viscosity: physics.viscosity.map_or(0.0, |_| fluid.kinematic_viscosity),
+            body_acceleration: magnitude,
+            courant_number: scheme.courant_number,
+            most_steps: 20,
+        })
     };
     let model = Model {
         method: "sph".to_owned(),
@@ -233,7 +259,7 @@ fn build<T: Real, const D: usize>(
         columns,
         plan,
         whole: vec![Box::new(Sort)],
-        pacing: Box::new(pacing),
+        pacing,
     };
     Ok(Sph { model, fields, particle_mass })
 }

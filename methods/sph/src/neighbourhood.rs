@@ -9,6 +9,7 @@ use finegrain_framework::{Near, Real, State, View};
 
 use crate::fields::{Column, Fields};
 use crate::kernel::Kernel;
+use crate::kernel::adaptive::Kernels;
 use crate::quantity::{Quantity, Values};
 use crate::wall::Extrapolation;
 
@@ -165,6 +166,17 @@ impl<T: Real, const D: usize> Candidates<T, D> {
         }
     }
 
+    /// The largest value of a gathered quantity that is not negative.
+    #[inline(always)]
+    pub fn largest(&self, gathered: &Gathered<T>, quantity: Quantity) -> T {
+        let place = gathered.places[quantity.index()];
+        let mut largest = T::zero();
+        for record in &self.pages[place / RECORD] {
+            largest = largest.max(record[place % RECORD]);
+        }
+        largest
+    }
+
     /// The cell's own particle number `i`.
     #[inline(always)]
     pub fn particle(&self, gathered: &Gathered<T>, i: usize) -> Particle<T, D> {
@@ -218,6 +230,8 @@ pub(crate) struct Neighbours<T, const D: usize> {
     padded: usize,
     distance_squared: Vec<T>,
     gradient_factor: Vec<T>,
+    /// Empty unless every particle has its own smoothing length.
+    gradient_factor_of_others: Vec<T>,
     /// Empty if no term wants it.
     kernel: Vec<T>,
     /// Per page of the candidates' records, a lane for each place. In the first, positions have
@@ -233,6 +247,7 @@ impl<T: Real, const D: usize> Default for Neighbours<T, D> {
             padded: 0,
             distance_squared: Vec::new(),
             gradient_factor: Vec::new(),
+            gradient_factor_of_others: Vec::new(),
             kernel: Vec::new(),
             pages: Vec::new(),
             places: [ABSENT; Quantity::COUNT],
@@ -241,21 +256,52 @@ impl<T: Real, const D: usize> Default for Neighbours<T, D> {
 }
 
 impl<T: Real, const D: usize> Neighbours<T, D> {
-    /// Gathers the candidates within the kernel's support of `particle`.
+    /// Gathers the candidates that interact with `particle`, with the kernel's values for them.
+    /// `longest` is the longest smoothing length of any candidate, where they have their own.
     #[inline(always)]
     pub fn gather(
         &mut self,
         gathered: &Gathered<T>,
         candidates: &Candidates<T, D>,
         particle: &Particle<T, D>,
-        kernel: &Kernel<T>,
+        kernels: &Kernels<T, D>,
+        longest: T,
+    ) {
+        // One place where the kernel is evaluated: it is compiled for every smoothing function.
+        let (kernel, radius) = match kernels {
+            Kernels::Uniform(kernel) => (*kernel, kernel.support_radius()),
+            Kernels::Adaptive(kernel) => {
+                let own = particle[Quantity::SmoothingLength];
+                (kernel.at(own), kernel.support() * own.max(longest))
+            }
+        };
+        self.find(gathered, candidates, particle, radius);
+        self.evaluate(&kernel);
+        if let Kernels::Adaptive(kernel) = kernels {
+            let (count, padded) = (self.found.len(), self.padded);
+            let place = self.places[Quantity::SmoothingLength.index()];
+            let smoothing_length = &self.pages[place / RECORD][place % RECORD][..padded];
+            let factor = &mut self.gradient_factor_of_others[..padded];
+            kernel.gradient_factor(&self.distance_squared[..padded], smoothing_length, factor);
+            factor[count..].fill(T::zero());
+        }
+    }
+
+    /// Gathers the candidates nearer to `particle` than `radius`.
+    #[inline(always)]
+    pub fn find(
+        &mut self,
+        gathered: &Gathered<T>,
+        candidates: &Candidates<T, D>,
+        particle: &Particle<T, D>,
+        radius: T,
     ) {
         // On a lattice many pairs are exactly the support apart, and rounding would decide, for
         // each of the two by itself, whether they interact: leave them all out.
-        let support = kernel.support_radius() * (T::one() - T::epsilon().sqrt());
+        let support = radius * (T::one() - T::epsilon().sqrt());
         let positions = std::array::from_fn(|a| &candidates.position[a][..]);
         T::within(positions, particle.position, support * support, &mut self.found);
-        let (count, padded) = (self.found.len(), self.found.padded());
+        let padded = self.found.padded();
         self.padded = padded;
         if self.distance_squared.len() < padded || self.pages.len() != gathered.pages().len() {
             self.grow(padded, gathered);
@@ -273,8 +319,15 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
                 *r2 = d.mul_add(*d, *r2);
             }
         }
+    }
+
+    /// The kernel's values for what was found.
+    #[inline(always)]
+    pub fn evaluate(&mut self, kernel: &Kernel<T>) {
+        let (count, padded) = (self.found.len(), self.padded);
+        let distance_squared = &self.distance_squared[..padded];
         let gradient_factor = &mut self.gradient_factor[..padded];
-        if gathered.has_kernel {
+        if !self.kernel.is_empty() {
             let values = &mut self.kernel[..padded];
             kernel.evaluate(distance_squared, values, gradient_factor);
             values[count..].fill(T::zero());
@@ -288,13 +341,15 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[cold]
     fn grow(&mut self, length: usize, gathered: &Gathered<T>) {
         self.places = gathered.places;
+        let has_own_lengths = self.places[Quantity::SmoothingLength.index()] != ABSENT;
         self.pages.resize_with(gathered.pages().len(), || std::array::from_fn(|_| Vec::new()));
         let all = self
             .pages
             .iter_mut()
             .flatten()
             .chain([&mut self.distance_squared, &mut self.gradient_factor])
-            .chain(gathered.has_kernel.then_some(&mut self.kernel));
+            .chain(gathered.has_kernel.then_some(&mut self.kernel))
+            .chain(has_own_lengths.then_some(&mut self.gradient_factor_of_others));
         for lanes in all {
             lanes.resize(length.max(lanes.len()), T::zero());
         }
@@ -326,6 +381,25 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[inline(always)]
     pub fn gradient_factor(&self) -> &[T] {
         &self.gradient_factor[..self.padded]
+    }
+
+    /// `F` with the neighbours' smoothing lengths, where they have their own.
+    #[inline(always)]
+    pub fn gradient_factor_of_others(&self) -> &[T] {
+        &self.gradient_factor_of_others[..self.padded]
+    }
+
+    /// Writes `(v_i - v_j) . (x_i - x_j)`, below 0 for particles that approach.
+    #[inline(always)]
+    pub fn velocity_jump(&self, i: &Particle<T, D>, jump: &mut [T]) {
+        jump.fill(T::zero());
+        for a in 0..D {
+            let own = i[Quantity::Velocity(a)];
+            let (v, dx) = (self.values(Quantity::Velocity(a)), self.difference(a));
+            for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
+                *jump = (own - v).mul_add(dx, *jump);
+            }
+        }
     }
 
     /// `W_ij`; only for terms that say that they use it.

@@ -78,20 +78,31 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
         }
         // Shifted particles are faster than the fluid.
         let speed = speed + drift2_max.sqrt();
-        // A particle moves by at most t v + t^2 a in the time t, a factor of two allowed for
-        // accelerations that grow meanwhile. That must stay within the skin.
-        let slack = 0.8 * whole.domain.slack();
-        let reach = |time: f64| time * speed + time * time * acceleration;
-        let skin_limit =
-            2.0 * slack / (speed + (speed * speed + 4.0 * acceleration * slack).sqrt());
         let stable = self.courant_number * sound_limit.min(viscous_limit).min(force_limit);
-        let dt = stable.min(skin_limit);
         // Accelerations are not known before the first step: look again after it.
         let most_steps = if whole.step == 0 { 1 } else { self.most_steps };
-        let mut steps = 1;
-        while steps < most_steps && reach((steps + 1) as f64 * dt) < slack {
-            steps += 1;
-        }
-        Ok(Pace { dt, steps })
+        Ok(within_skin(stable, most_steps, whole.domain.slack(), speed, acceleration))
     }
+}
+
+/// The pace of time steps of at most `stable`, with which no particle moves by more than `slack`
+/// before particles are sorted again.
+pub(crate) fn within_skin(
+    stable: f64,
+    most_steps: u64,
+    slack: f64,
+    speed: f64,
+    acceleration: f64,
+) -> Pace {
+    // A particle moves by at most t v + t^2 a in the time t, a factor of two allowed for
+    // accelerations that grow meanwhile. That must stay within the skin.
+    let slack = 0.8 * slack;
+    let reach = |time: f64| time * speed + time * time * acceleration;
+    let skin_limit = 2.0 * slack / (speed + (speed * speed + 4.0 * acceleration * slack).sqrt());
+    let dt = stable.min(skin_limit);
+    let mut steps = 1;
+    while steps < most_steps && reach((steps + 1) as f64 * dt) < slack {
+        steps += 1;
+    }
+    Pace { dt, steps }
 }

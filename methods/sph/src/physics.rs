@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::acceleration::AccelerationField;
 use crate::body::{Body, Slip};
 use crate::error::{SphError, finite, not_negative, positive};
+use crate::gas::ShockCapturing;
 use crate::state_equation::StateEquation;
 
 /// A weakly compressible fluid.
@@ -12,7 +13,8 @@ use crate::state_equation::StateEquation;
 pub struct Fluid {
     /// Reference density, kg/m^3.
     pub density: f64,
-    /// Numerical sound speed, m/s: some ten times the largest speed.
+    /// Numerical sound speed, m/s: some ten times the largest speed. An ideal gas has its own, by its
+    /// energy.
     pub sound_speed: f64,
     /// Kinematic viscosity, m^2/s.
     pub kinematic_viscosity: f64,
@@ -35,6 +37,8 @@ pub struct Physics {
     pub viscosity: Option<Viscosity>,
     /// Energy equation.
     pub energy: bool,
+    /// What an ideal gas needs where there are shocks.
+    pub shock_capturing: Option<ShockCapturing>,
     /// Constant acceleration of the fluid, m/s^2; zero if none.
     pub body_acceleration: [f64; 3],
     /// Acceleration of the fluid that varies, besides.

@@ -35,11 +35,19 @@ pub(crate) enum Quantity {
     Fullness,
     /// Velocity of a particle besides that of the fluid.
     Drift(usize),
+    Energy,
+    Pressure,
+    SoundSpeed,
+    SmoothingLength,
+    /// `Omega` of Springel & Hernquist (2002).
+    GradH,
+    /// Fastest signal between a particle and its neighbours.
+    SignalSpeed,
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 47;
+    pub const COUNT: usize = 53;
 
     /// Its place among all.
     #[inline(always)]
@@ -63,6 +71,12 @@ impl Quantity {
             Self::Correction(k) => 37 + k,
             Self::Fullness => 43,
             Self::Drift(a) => 44 + a,
+            Self::Energy => 47,
+            Self::Pressure => 48,
+            Self::SoundSpeed => 49,
+            Self::SmoothingLength => 50,
+            Self::GradH => 51,
+            Self::SignalSpeed => 52,
         }
     }
 

@@ -6,6 +6,7 @@ use crate::body::{WallPressure, WallVelocity};
 use crate::error::{SphError, positive};
 use crate::kernel::SmoothingFunction;
 use crate::stabilisation::Stabilisation;
+use crate::smoothing::Smoothing;
 
 /// How it is discretised.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +15,8 @@ pub struct Scheme {
     pub kernel: SmoothingFunction,
     /// Smoothing length in units of the particle spacing.
     pub smoothing_ratio: f64,
+    /// How long the smoothing length is.
+    pub smoothing: Smoothing,
     /// How time is stepped.
     pub integrator: Integrator,
     /// Fraction of the stability limits that is used as time step.
@@ -37,6 +40,7 @@ impl Default for Scheme {
         Self {
             kernel: SmoothingFunction::Gaussian,
             smoothing_ratio: 1.0,
+            smoothing: Smoothing::Uniform,
             integrator: Integrator::Leapfrog,
             courant_number: 1.0,
             skin: 0.2,
@@ -51,6 +55,7 @@ impl Default for Scheme {
 impl Scheme {
     pub(crate) fn check(&self) -> Result<(), SphError> {
         positive("smoothing_ratio", self.smoothing_ratio)?;
+        self.smoothing.check()?;
         positive("courant_number", self.courant_number)?;
         positive("skin", self.skin)?;
         positive("beta_max", self.beta_max)?;

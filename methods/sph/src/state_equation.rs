@@ -9,7 +9,7 @@ use crate::fields::Fields;
 use crate::physics::Fluid;
 use crate::quantity::Quantity;
 
-/// Pressure as a function of density.
+/// Pressure as a function of density, and for a gas of energy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "kind", deny_unknown_fields)]
 pub enum StateEquation {
@@ -26,10 +26,16 @@ pub enum StateEquation {
         /// Background pressure `p_b` in units of `c^2 rho_0`.
         background: f64,
     },
+    /// `p = (gamma - 1) rho e`, with the specific internal energy `e`.
+    IdealGas {
+        /// Ratio gamma of the specific heats.
+        heat_ratio: f64,
+    },
 }
 
 impl StateEquation {
-    /// Pressure, Pa, at `density`, for a fluid with reference density and sound speed.
+    /// Pressure, Pa, at `density`, for a fluid with reference density and sound speed; of an ideal
+    /// gas as it has it at the temperature at which that is its sound speed.
     #[inline(always)]
     pub fn pressure<T: Real>(&self, density: T, reference_density: T, sound_speed: T) -> T {
         let stiffness = sound_speed * sound_speed * reference_density;
@@ -40,11 +46,10 @@ impl StateEquation {
                 let gamma = T::of(exponent);
                 stiffness * ((ratio.powf(gamma) - T::one()) / gamma + T::of(background))
             }
+            Self::IdealGas { heat_ratio } => stiffness * ratio / T::of(heat_ratio),
         }
     }
-}
 
-impl StateEquation {
     /// Density, kg/m^3, at `pressure`: the inverse of [`StateEquation::pressure`]. Where no density
     /// has so low a pressure, NaN or not positive.
     #[inline(always)]
@@ -58,11 +63,10 @@ impl StateEquation {
                 let power = T::of(exponent) * (ratio - T::of(background)) + T::one();
                 reference_density * power.powf(T::of(1.0 / exponent))
             }
+            Self::IdealGas { heat_ratio } => reference_density * ratio * T::of(heat_ratio),
         }
     }
-}
 
-impl StateEquation {
     /// Elastic energy, J/kg, at a density `ratio` to the reference density:
     /// `e = integral p / rho^2 d rho` from there.
     pub fn elastic_energy(&self, ratio: f64, sound_speed: f64) -> f64 {
@@ -75,6 +79,7 @@ impl StateEquation {
                     if power == 0.0 { ratio.ln() } else { (ratio.powf(power) - 1.0) / power };
                 ((work + expansion) / exponent, background)
             }
+            Self::IdealGas { heat_ratio } => (ratio.ln() / heat_ratio, 0.0),
         };
         sound_speed * sound_speed * (of_density - background * expansion)
     }

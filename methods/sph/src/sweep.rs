@@ -9,7 +9,7 @@ use finegrain_framework::{
 
 use crate::acceleration::AccelerationField;
 use crate::fields::Fields;
-use crate::kernel::Kernel;
+use crate::kernel::adaptive::Kernels;
 use crate::neighbourhood::{Candidates, Gathered, Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 use crate::term::{AnyTerm, Term, Work};
@@ -19,7 +19,7 @@ use crate::wall::{Extrapolation, Friction};
 #[derive(Clone, Debug)]
 pub(crate) struct Sweep<T, const D: usize> {
     name: String,
-    kernel: Kernel<T>,
+    kernels: Kernels<T, D>,
     /// The sums for particles of the fluid.
     of_fluid: Vec<AnyTerm<T>>,
     /// The sums for particles of bodies.
@@ -37,7 +37,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
     /// A sweep of `terms`, with the columns that they need. If `bodies_evolve`, the sums for the
     /// fluid are for the particles of bodies, too.
     pub fn new(
-        kernel: Kernel<T>,
+        kernels: Kernels<T, D>,
         terms: Vec<AnyTerm<T>>,
         fields: &Fields<T>,
         body_acceleration: [T; D],
@@ -58,7 +58,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         let of_bodies = |term: &&AnyTerm<T>| term.acts_on_bodies() || bodies_evolve;
         Self {
             name: format!("sph {}", names.join(", ")),
-            kernel,
+            kernels,
             gathered: Gathered::new(fields, reads.collect(), uses_kernel),
             of_fluid: terms.iter().filter(|term| !term.acts_on_bodies()).copied().collect(),
             of_bodies: terms.iter().filter(of_bodies).copied().collect(),
@@ -92,7 +92,13 @@ impl<T: Real, const D: usize> Sweep<T, D> {
                 }
                 continue;
             }
-            candidates.collect(&self.gathered, near, block, cell, self.kernel.support_radius());
+            candidates.collect(&self.gathered, near, block, cell, self.kernels.range());
+            let longest = match self.kernels {
+                Kernels::Uniform(_) => T::zero(),
+                Kernels::Adaptive(_) => {
+                    candidates.largest(&self.gathered, Quantity::SmoothingLength)
+                }
+            };
             for k in 0..cell.span.len() {
                 let mut particle = candidates.particle(&self.gathered, k);
                 let terms = self.terms_for(particle.is_wall());
@@ -103,7 +109,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
                     continue;
                 }
                 particle.no_slip = self.no_slip(&particle);
-                neighbours.gather(&self.gathered, candidates, &particle, &self.kernel);
+                neighbours.gather(&self.gathered, candidates, &particle, &self.kernels, longest);
                 let mut sums = self.sum(terms, &particle, neighbours, work);
                 if let Some(field) = &self.acceleration_field
                     && !particle.is_wall()

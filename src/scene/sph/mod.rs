@@ -8,6 +8,9 @@ pub mod hydrostatic_tank;
 pub mod rotating_patch;
 pub mod standing_wave;
 pub mod tank;
+mod gas;
+pub mod noh;
+pub mod sod;
 pub mod taylor_green;
 
 use std::time::Duration;
@@ -18,6 +21,7 @@ use finegrain_framework::{Integrator, Real, Simulation, State};
 use finegrain_sph::{Fields, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity, measure};
 
 use super::parameter::{Parameter, Parameters};
+use super::report::Picture;
 use super::{Orders, Prepared, Report, SceneError};
 use crate::figure::{Axis, Field};
 
@@ -25,7 +29,15 @@ use crate::figure::{Axis, Field};
 const PARAMETERS: [Parameter; 7] = [
     Parameter::choice(
         "kernel",
-        &["gaussian", "cubic-spline", "quartic-spline", "quintic-spline", "wendland-c2"],
+        &[
+            "gaussian",
+            "cubic-spline",
+            "quartic-spline",
+            "quintic-spline",
+            "wendland-c2",
+            "wendland-c4",
+            "wendland-c6",
+        ],
         "smoothing kernel",
     ),
     Parameter::number("smoothing_ratio", 1.0, [0.8, 3.0], "", "smoothing length over spacing"),
@@ -53,17 +65,23 @@ const PARAMETERS: [Parameter; 7] = [
 /// What the parameters say about the discretisation.
 fn scheme(parameters: &Parameters) -> Scheme {
     Scheme {
-        kernel: match parameters.choice("kernel") {
-            "cubic-spline" => SmoothingFunction::CubicSpline,
-            "quartic-spline" => SmoothingFunction::QuarticSpline,
-            "quintic-spline" => SmoothingFunction::QuinticSpline,
-            "wendland-c2" => SmoothingFunction::WendlandC2,
-            _ => SmoothingFunction::Gaussian,
-        },
+        kernel: kernel(parameters),
         smoothing_ratio: parameters.number("smoothing_ratio"),
         integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
         courant_number: parameters.number("courant"),
         ..Scheme::default()
+    }
+}
+
+fn kernel(parameters: &Parameters) -> SmoothingFunction {
+    match parameters.choice("kernel") {
+        "cubic-spline" => SmoothingFunction::CubicSpline,
+        "quartic-spline" => SmoothingFunction::QuarticSpline,
+        "quintic-spline" => SmoothingFunction::QuinticSpline,
+        "wendland-c2" => SmoothingFunction::WendlandC2,
+        "wendland-c4" => SmoothingFunction::WendlandC4,
+        "wendland-c6" => SmoothingFunction::WendlandC6,
+        _ => SmoothingFunction::Gaussian,
     }
 }
 
@@ -101,6 +119,11 @@ trait Flow<T: Real> {
 
     /// Spacing of the particles, m.
     fn spacing(&self) -> f64;
+
+    /// The picture of the end: by default of the speed.
+    fn picture(&self, simulation: &Simulation<Cells<T>>, fields: &Fields<T>) -> Picture {
+        picture(simulation, fields, self.title(), self.spacing()).into()
+    }
 }
 
 /// A scene with its SPH model.
@@ -140,6 +163,9 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
             if fields.wall_depth.is_some() {
                 dump = dump.scalar("wall_depth");
             }
+            if fields.energy.is_some() {
+                dump = dump.scalar("energy");
+            }
             // One at the end in any case, so that every run can be taken up again.
             let every = Every::Steps(orders.checkpoint_every.unwrap_or(u64::MAX));
             run = run.out(out).dump(dump).checkpoint(every, 3);
@@ -160,7 +186,7 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
         // Over the spacing: a sign of clumping.
         let closest = measure::closest_pair(&mut simulation.whole()) / flow.spacing();
         report.results.insert("closest_pair", closest);
-        report.picture = Some(picture(simulation, &fields, flow.title(), flow.spacing()));
+        report.picture = Some(flow.picture(simulation, &fields));
         Ok(report)
     }
 }

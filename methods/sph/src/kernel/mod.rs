@@ -11,6 +11,8 @@ pub mod profile;
 pub mod quartic;
 pub mod quintic;
 pub mod wendland;
+pub mod wendland_c4;
+pub mod wendland_c6;
 
 #[cfg(test)]
 mod tests;
@@ -25,6 +27,8 @@ use profile::Profile;
 use quartic::QuarticSpline;
 use quintic::QuinticSpline;
 use wendland::WendlandC2;
+use wendland_c4::WendlandC4;
+use wendland_c6::WendlandC6;
 
 /// The name by which a scene chooses its kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,6 +44,10 @@ pub enum SmoothingFunction {
     QuinticSpline,
     /// See [`WendlandC2`].
     WendlandC2,
+    /// See [`WendlandC4`].
+    WendlandC4,
+    /// See [`WendlandC6`].
+    WendlandC6,
 }
 
 /// Evaluates an expression with the type `$Profile` standing for the profile that is named.
@@ -66,9 +74,20 @@ macro_rules! with_profile {
                 type $Profile = WendlandC2;
                 $expression
             }
+            SmoothingFunction::WendlandC4 => {
+                type $Profile = WendlandC4;
+                $expression
+            }
+            SmoothingFunction::WendlandC6 => {
+                type $Profile = WendlandC6;
+                $expression
+            }
         }
     };
 }
+
+// After the macro, which it uses.
+pub(crate) mod adaptive;
 
 impl SmoothingFunction {
     /// `kappa`: the radius of the support in smoothing lengths.

@@ -5,12 +5,15 @@
 
 pub(crate) mod artificial_pressure;
 pub(crate) mod artificial_viscosity;
+pub(crate) mod conductivity;
 pub(crate) mod continuity;
 pub(crate) mod density_diffusion;
 pub(crate) mod energy;
 pub(crate) mod moment;
 pub(crate) mod momentum;
 pub(crate) mod shifting;
+pub(crate) mod gas_pressure;
+pub(crate) mod shock_viscosity;
 pub(crate) mod strain_rate;
 pub(crate) mod tensile_control;
 pub(crate) mod viscosity;
@@ -24,12 +27,15 @@ use crate::quantity::{Quantity, Values};
 
 use artificial_pressure::ArtificialPressure;
 use artificial_viscosity::ArtificialViscosity;
+use conductivity::Conductivity;
 use continuity::Continuity;
 use density_diffusion::DensityDiffusion;
 use energy::Energy;
 use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
 use shifting::Shifting;
+use gas_pressure::GasPressure;
+use shock_viscosity::ShockViscosity;
 use strain_rate::StrainRate;
 use tensile_control::TensileControl;
 use viscosity::MorrisViscosity;
@@ -159,6 +165,9 @@ terms!(
     ArtificialPressure,
     TensileControl,
     Shifting,
+    GasPressure,
+    ShockViscosity,
+    Conductivity,
 );
 
 /// Lanes that a term works with: a weight for each neighbour.
