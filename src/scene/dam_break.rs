@@ -68,7 +68,7 @@ impl DamBreak {
         let series = |n: u32| {
             // Odd modes cos(k x) that vanish at the gate.
             let k = (f64::from(n) + 0.5) * std::f64::consts::PI / WIDTH;
-            let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
             let below = (-k * y).exp() - (-k * (2.0 * HEIGHT - y)).exp();
             2.0 * sign * (k * x).cos() * below / (k * k * WIDTH * (1.0 + (-2.0 * k * HEIGHT).exp()))
         };

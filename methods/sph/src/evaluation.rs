@@ -24,7 +24,7 @@ pub(crate) struct Alone<T: Real> {
     pub reads: Vec<Quantity>,
     pub writes: Vec<Quantity>,
     /// Makes it once the columns are known.
-    pub stage: Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>,
+    pub stage: MakeStage<T>,
 }
 
 /// Makes a stage from the columns of a model.

@@ -55,7 +55,7 @@ impl<T: Real> UpdateStage<Cells<T>> for WallState<T> {
                 density[i] = equation.density(pressure[i], rho, c);
                 volume[i] = self.particle_mass / density[i];
                 pressure_term[i] = pressure[i] / (density[i] * density[i]);
-                if !(density[i] > T::zero()) {
+                if density[i].is_nan() || density[i] <= T::zero() {
                     return Err(Fault::new(format!(
                         "particle {} in a body has density {}, from a pressure of {}; it must be \
                          positive",
