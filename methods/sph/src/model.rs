@@ -1,5 +1,7 @@
 //! Builds an SPH model from particles, a fluid and a choice of physics.
 
+use std::any::{Any, TypeId};
+
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::CellsOptions;
 use finegrain_framework::{Columns, Evolution, Handle, Model, Pacing, Real, Stage};
@@ -56,11 +58,47 @@ impl<T: Real> Sph<T> {
         physics.check()?;
         scheme.check()?;
         gas::check(fluid, physics, scheme)?;
-        match start.region.lower.len() {
-            1 => build::<T, 1>(start, fluid, physics, scheme, Dimension::One),
-            2 => build::<T, 2>(start, fluid, physics, scheme, Dimension::Two),
-            _ => build::<T, 3>(start, fluid, physics, scheme, Dimension::Three),
-        }
+        // Built by functions that are not generic, so that the loops of all terms are compiled once,
+        // with this crate, and not again in every program that uses it.
+        let sph: Box<dyn Any> = if TypeId::of::<T>() == TypeId::of::<f32>() {
+            Box::new(build_f32(start, fluid, physics, scheme)?)
+        } else {
+            Box::new(build_f64(start, fluid, physics, scheme)?)
+        };
+        Ok(*sph.downcast().expect("a real number is f32 or f64"))
+    }
+}
+
+#[inline(never)]
+fn build_f32(
+    start: &Start,
+    fluid: &Fluid,
+    physics: &Physics,
+    scheme: &Scheme,
+) -> Result<Sph<f32>, SphError> {
+    build_in_its_dimension(start, fluid, physics, scheme)
+}
+
+#[inline(never)]
+fn build_f64(
+    start: &Start,
+    fluid: &Fluid,
+    physics: &Physics,
+    scheme: &Scheme,
+) -> Result<Sph<f64>, SphError> {
+    build_in_its_dimension(start, fluid, physics, scheme)
+}
+
+fn build_in_its_dimension<T: Real>(
+    start: &Start,
+    fluid: &Fluid,
+    physics: &Physics,
+    scheme: &Scheme,
+) -> Result<Sph<T>, SphError> {
+    match start.region.lower.len() {
+        1 => build::<T, 1>(start, fluid, physics, scheme, Dimension::One),
+        2 => build::<T, 2>(start, fluid, physics, scheme, Dimension::Two),
+        _ => build::<T, 3>(start, fluid, physics, scheme, Dimension::Three),
     }
 }
 

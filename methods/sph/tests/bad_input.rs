@@ -3,7 +3,10 @@
 use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Settings, Simulation};
-use finegrain_sph::{Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation};
+use finegrain_sph::{
+    Fluid, Packing, Physics, Scheme, ShockCapturing, Smoothing, Sph, Start, StateEquation,
+    Viscosity,
+};
 
 fn start() -> Start {
     let lattice = Packing::Square.fit([1.0; 3], 0.1).unwrap();
@@ -81,4 +84,29 @@ fn a_particle_that_is_nowhere_and_one_that_moves_at_no_speed() {
     start.velocities[3][0] = f64::INFINITY;
     let said = begin(&start);
     assert!(said.contains("largest speed inf"), "{said}");
+}
+
+#[test]
+fn choices_that_do_not_make_a_gas() {
+    let gas = Fluid { state_equation: StateEquation::IdealGas { heat_ratio: 1.4 }, ..FLUID };
+    let physics = Physics { energy: true, ..Physics::default() };
+    let scheme = Scheme { smoothing: Smoothing::Adaptive { longest: 0.2 }, ..Scheme::default() };
+    let said = |fluid: &Fluid, physics: &Physics, scheme: &Scheme, word: &str| {
+        let said = complaint(&start(), fluid, physics, scheme);
+        assert!(said.contains(word), "{said}");
+    };
+    assert!(Sph::<f64>::new(&start(), &gas, &physics, &scheme).is_ok());
+    said(&FLUID, &physics, &scheme, "needs an ideal gas");
+    said(&gas, &physics, &Scheme::default(), "needs a smoothing length that follows the density");
+    said(&gas, &Physics::default(), &scheme, "needs the energy equation");
+    let viscous = Physics { viscosity: Some(Viscosity::Morris), ..physics.clone() };
+    said(&gas, &viscous, &scheme, "needs no laminar viscosity");
+    let shocks = ShockCapturing { viscosity: -1.0, ..ShockCapturing::default() };
+    let shocked = Physics { shock_capturing: Some(shocks), ..physics.clone() };
+    said(&gas, &shocked, &scheme, "shock viscosity is -1");
+    said(&FLUID, &shocked, &Scheme::default(), "shock capturing needs an ideal gas");
+    let cold = Fluid { state_equation: StateEquation::IdealGas { heat_ratio: 1.0 }, ..gas };
+    said(&cold, &physics, &scheme, "heat_ratio is 1");
+    let none = Scheme { smoothing: Smoothing::Adaptive { longest: 0.0 }, ..scheme };
+    said(&gas, &physics, &none, "longest smoothing length is 0");
 }

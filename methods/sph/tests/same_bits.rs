@@ -1,29 +1,37 @@
 //! The same flow gives the same bits for any number of workers, schedule and hand-out order.
 
 mod flow;
+mod gas_box;
 
-use finegrain_framework::{HandOut, Real, Schedule, Settings};
-use finegrain_sph::Viscosity;
+use finegrain_framework::space::Cells;
+use finegrain_framework::{HandOut, Real, Schedule, Settings, Simulation};
+use finegrain_sph::{ShockCapturing, Viscosity};
 
-fn hash<T: Real>(dims: usize, viscosity: Viscosity, settings: Settings) -> u64 {
-    let (mut simulation, _, _) = flow::flow::<T>(dims, viscosity, true, settings);
+fn hash<T: Real>(mut simulation: Simulation<Cells<T>>) -> u64 {
     // Several paces, so that particles are sorted anew more than once.
     simulation.advance(30).unwrap();
     simulation.state_hash()
 }
 
 fn same_bits<T: Real>(dims: usize, viscosity: Viscosity) {
+    same_bits_of::<T>(|settings| flow::flow(dims, viscosity, true, settings).0);
+}
+
+fn same_bits_of_gas<T: Real>(dims: usize) {
+    same_bits_of::<T>(|settings| {
+        let sph = gas_box::gas_box::<T>(dims, Some(ShockCapturing::default()));
+        Simulation::new(sph.model, settings).unwrap()
+    });
+}
+
+fn same_bits_of<T: Real>(start: impl Fn(Settings) -> Simulation<Cells<T>>) {
     let serial = Settings { schedule: Schedule::Serial, workers: 1, ..Settings::default() };
-    let expected = hash::<T>(dims, viscosity, serial);
+    let expected = hash(start(serial));
     for schedule in Schedule::ALL {
         for workers in [1, 2, 3, 8] {
             for hand_out in [HandOut::Natural, HandOut::Shuffled { seed: 3 }] {
                 let settings = Settings { schedule, workers, hand_out, ..Settings::default() };
-                assert_eq!(
-                    hash::<T>(dims, viscosity, settings.clone()),
-                    expected,
-                    "{dims}-D {viscosity:?} {settings:?}"
-                );
+                assert_eq!(hash(start(settings.clone())), expected, "{settings:?}");
             }
         }
     }
@@ -47,4 +55,15 @@ fn two_sweeps_in_a_thin_3d_box() {
 #[test]
 fn single_precision() {
     same_bits::<f32>(3, Viscosity::Morris);
+}
+
+#[test]
+fn gas_in_1d_and_2d() {
+    same_bits_of_gas::<f64>(1);
+    same_bits_of_gas::<f64>(2);
+}
+
+#[test]
+fn gas_in_3d_and_single_precision() {
+    same_bits_of_gas::<f32>(3);
 }

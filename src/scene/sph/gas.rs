@@ -27,7 +27,7 @@ pub(super) const PARAMETERS: [Parameter; 6] = [
     ),
     Parameter::number(
         "smoothing_ratio",
-        1.8,
+        1.5,
         [0.8, 4.0],
         "",
         "smoothing length over the spacing that goes with the density",
