@@ -10,6 +10,7 @@ pub(crate) mod density_diffusion;
 pub(crate) mod energy;
 pub(crate) mod moment;
 pub(crate) mod momentum;
+pub(crate) mod repulsion;
 pub(crate) mod shifting;
 pub(crate) mod strain_rate;
 pub(crate) mod tensile_control;
@@ -29,6 +30,7 @@ use density_diffusion::DensityDiffusion;
 use energy::Energy;
 use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
+use repulsion::Repulsion;
 use shifting::Shifting;
 use strain_rate::StrainRate;
 use tensile_control::TensileControl;
@@ -159,6 +161,7 @@ terms!(
     ArtificialPressure,
     TensileControl,
     Shifting,
+    Repulsion,
 );
 
 /// Lanes that a term works with: a weight for each neighbour.
