@@ -5,8 +5,8 @@ use finegrain_framework::Integrator;
 use crate::body::{WallPressure, WallVelocity};
 use crate::error::{SphError, positive};
 use crate::kernel::SmoothingFunction;
-use crate::stabilisation::Stabilisation;
 use crate::smoothing::Smoothing;
+use crate::stabilisation::Stabilisation;
 
 /// How it is discretised.
 #[derive(Clone, Copy, Debug, PartialEq)]

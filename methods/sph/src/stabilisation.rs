@@ -11,6 +11,7 @@ use crate::kernel::Kernel;
 use crate::physics::{Fluid, Physics};
 use crate::quantity::Quantity;
 use crate::term::artificial_pressure::ArtificialPressure;
+use crate::term::repulsion::Repulsion;
 use crate::term::shifting::Shifting;
 use crate::term::tensile_control::TensileControl;
 use crate::term::{Term, artificial_viscosity, density_diffusion, moment};
@@ -34,6 +35,9 @@ pub struct Stabilisation {
     pub tensile_control: bool,
     /// Largest speed of the flow, m/s, about, for the shifting of particles (Sun et al. 2017).
     pub shifting: Option<f64>,
+    /// Strength of the repulsion by the particles of bodies, m^2/s^2 (Monaghan 1994), about the
+    /// square of the largest speed: it keeps apart what is nearer than a spacing.
+    pub repulsion: Option<f64>,
 }
 
 /// Artificial viscosity of Monaghan (1992), between particles of the fluid that approach.
@@ -83,6 +87,9 @@ impl Stabilisation {
         }
         if let Some(speed) = self.shifting {
             positive("speed of shifting", speed)?;
+        }
+        if let Some(strength) = self.repulsion {
+            not_negative("repulsion", strength)?;
         }
         Ok(())
     }
@@ -138,6 +145,9 @@ impl Stabilisation {
             let term =
                 Shifting { speed: T::of(speed), support_radius, inverse_kernel, least_fullness };
             terms.push(term.into());
+        }
+        if let Some(strength) = self.repulsion {
+            terms.push(Repulsion { strength: T::of(strength), spacing: T::of(spacing) }.into());
         }
         let needs: Vec<_> = terms.iter().flat_map(|term| Term::<T>::reads(term, dims)).collect();
         let corrected = |q: &Quantity| {

@@ -110,6 +110,7 @@ pub(super) fn scheme(parameters: &Parameters, speed: f64) -> Scheme {
             artificial_pressure: (tension == "artificial-pressure").then_some(0.2),
             tensile_control: tension == "control",
             shifting: (parameters.choice("shifting") == "on").then_some(speed),
+            repulsion: None,
         },
         ..Scheme::default()
     }

@@ -4,13 +4,13 @@ pub mod cylinder;
 pub mod dam_break;
 pub mod drop;
 pub mod free_surface;
+mod gas;
 pub mod hydrostatic_tank;
+pub mod noh;
 pub mod rotating_patch;
+pub mod sod;
 pub mod standing_wave;
 pub mod tank;
-mod gas;
-pub mod noh;
-pub mod sod;
 pub mod taylor_green;
 
 use std::time::Duration;

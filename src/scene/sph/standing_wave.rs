@@ -16,6 +16,7 @@ use crate::scene::tank::GRAVITY;
 use crate::scene::{Precision, Prepared, Report, SceneError};
 
 const DEFAULTS: Defaults = Defaults {
+    repulsion: 0.0,
     mach: 0.1,
     smoothing_ratio: 2.0,
     artificial_viscosity: 0.01,
@@ -54,8 +55,10 @@ fn build<T: Real>(
     let scheme = tank::scheme(parameters, speed);
     let mut start = tank::start(&scene.tank, spacing, &scheme, |x| x[1] < DEPTH);
     start.velocities = start.positions.iter().map(|&x| scene.velocity(x)).collect();
+    let positions = start.positions.clone();
+    tank::settle(&mut start, &scene.tank, DEPTH, fluid.sound_speed);
     let mut sph = Sph::<T>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
-    free_surface::set_pressure(&mut sph, &fluid, &start.positions, |[x, y, z]| {
+    free_surface::set_pressure(&mut sph, &fluid, &positions, |[x, y, z]| {
         scene.pressure([x, y.min(DEPTH), z])
     });
     let description = super::description("standing-wave", parameters, precision);

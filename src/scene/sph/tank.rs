@@ -6,19 +6,29 @@ use finegrain_framework::run::{Every, Run};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Real, State};
-use finegrain_sph::{Fields, Fluid, Physics, Scheme, Slip, Start, WallPressure};
+use finegrain_sph::{Fields, Fluid, Physics, Scheme, Slip, Stabilisation, Start, WallPressure};
 
 use super::free_surface;
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::tank::{DENSITY, GRAVITY, Tank};
 
 /// Parameters that scenes in a tank have besides.
-pub(super) const PARAMETERS: [Parameter; 1] = [Parameter::choice(
-    "walls",
-    &["extrapolated", "evolved"],
-    "pressure in the walls: from the fluid (Adami et al. 2012), or virtual particles that repel by \
+pub(super) const PARAMETERS: [Parameter; 2] = [
+    Parameter::choice(
+        "walls",
+        &["extrapolated", "evolved"],
+        "pressure in the walls: from the fluid (Adami et al. 2012), or virtual particles that repel by \
      being compressed (Monaghan 1994)",
-)];
+    ),
+    Parameter::number(
+        "repulsion",
+        0.0,
+        [0.0, 10.0],
+        "",
+        "repulsion of what is nearer than a spacing to particles of walls (Monaghan 1994), in units \
+         of the square of the largest speed",
+    ),
+];
 
 /// Water with a numerical sound speed, m/s.
 pub(super) fn water(parameters: &Parameters, sound_speed: f64) -> Fluid {
@@ -42,12 +52,18 @@ pub(super) fn physics(tank: &Tank) -> Physics {
 
 /// The scheme that the parameters name, for a flow with this largest speed, m/s.
 pub(super) fn scheme(parameters: &Parameters, speed: f64) -> Scheme {
+    let scheme = free_surface::scheme(parameters, speed);
+    let repulsion = parameters.number("repulsion") * speed * speed;
     Scheme {
+        stabilisation: Stabilisation {
+            repulsion: (repulsion > 0.0).then_some(repulsion),
+            ..scheme.stabilisation
+        },
         wall_pressure: match parameters.choice("walls") {
             "evolved" => WallPressure::Evolved,
             _ => WallPressure::Extrapolated,
         },
-        ..free_surface::scheme(parameters, speed)
+        ..scheme
     }
 }
 
@@ -88,6 +104,19 @@ pub(super) fn start(
         particle_volume: spacing * spacing,
         positions,
         velocities: Vec::new(),
+    }
+}
+
+/// Moves the water of a start up to `depth` to where it is in equilibrium as the slightly
+/// compressible fluid that it is: rows are closer where the pressure is higher, so that the
+/// density of the equation of state is that with which particles lie, to first order in
+/// `g depth / c^2`.
+pub(super) fn settle(start: &mut Start, tank: &Tank, depth: f64, sound_speed: f64) {
+    let compression = GRAVITY / (sound_speed * sound_speed);
+    for x in &mut start.positions {
+        if x[0] > 0.0 && x[0] < tank.width && x[1] > 0.0 {
+            x[1] -= compression * (depth - 0.5 * x[1]) * x[1];
+        }
     }
 }
 

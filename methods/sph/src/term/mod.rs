@@ -9,10 +9,11 @@ pub(crate) mod conductivity;
 pub(crate) mod continuity;
 pub(crate) mod density_diffusion;
 pub(crate) mod energy;
+pub(crate) mod gas_pressure;
 pub(crate) mod moment;
 pub(crate) mod momentum;
+pub(crate) mod repulsion;
 pub(crate) mod shifting;
-pub(crate) mod gas_pressure;
 pub(crate) mod shock_viscosity;
 pub(crate) mod strain_rate;
 pub(crate) mod tensile_control;
@@ -31,10 +32,11 @@ use conductivity::Conductivity;
 use continuity::Continuity;
 use density_diffusion::DensityDiffusion;
 use energy::Energy;
+use gas_pressure::GasPressure;
 use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
+use repulsion::Repulsion;
 use shifting::Shifting;
-use gas_pressure::GasPressure;
 use shock_viscosity::ShockViscosity;
 use strain_rate::StrainRate;
 use tensile_control::TensileControl;
@@ -168,6 +170,7 @@ terms!(
     GasPressure,
     ShockViscosity,
     Conductivity,
+    Repulsion,
 );
 
 /// Lanes that a term works with: a weight for each neighbour.
