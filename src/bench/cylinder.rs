@@ -197,7 +197,7 @@ fn row<T: Real>(
         neighbours: measure::mean_neighbours(&mut simulation.whole()),
         sweeps: match plan.viscosity {
             Viscosity::StrainRate => 2,
-            Viscosity::Morris => 1,
+            Viscosity::Morris | Viscosity::Adami => 1,
         },
         seconds_per_step: Vec::new(),
         alone: Vec::new(),

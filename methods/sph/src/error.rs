@@ -24,6 +24,14 @@ pub enum SphError {
         /// Number of velocities.
         velocities: usize,
     },
+    /// A choice that goes only with others.
+    #[error("{choice} goes only with {others}")]
+    Choice {
+        /// What was chosen.
+        choice: &'static str,
+        /// What it needs.
+        others: &'static str,
+    },
     /// A body makes no sense.
     #[error("body {number}: {cause}")]
     Body {

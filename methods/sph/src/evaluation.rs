@@ -18,6 +18,9 @@ pub(crate) enum Piece<T: Real> {
     Update(Update<T>),
 }
 
+/// Makes the stage of an update once the columns are known.
+type MakeStage<T> = Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>;
+
 /// An update of a particle's own quantities.
 pub(crate) struct Update<T: Real> {
     pub reads: Vec<Quantity>,
@@ -25,7 +28,7 @@ pub(crate) struct Update<T: Real> {
     /// Whether it overwrites what is already there, in bodies, from sums over the fluid.
     pub amends: bool,
     /// Makes its stage once the columns are known.
-    pub stage: Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>,
+    pub stage: MakeStage<T>,
 }
 
 impl<T: Real> Piece<T> {

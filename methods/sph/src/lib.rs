@@ -82,6 +82,6 @@ pub use kernel::{Kernel, SmoothingFunction};
 pub use model::Sph;
 pub use packing::{Lattice, Packing};
 pub use physics::{Fluid, Physics, Viscosity};
-pub use scheme::Scheme;
+pub use scheme::{Density, Edac, PressureForm, Scheme};
 pub use start::Start;
 pub use state_equation::StateEquation;

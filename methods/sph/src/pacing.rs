@@ -27,8 +27,8 @@ pub(crate) struct TimeStepControl<T> {
     pub smoothing_length: f64,
     /// Sound speed, m/s.
     pub sound_speed: f64,
-    /// Kinematic viscosity, m^2/s; 0 without.
-    pub kinematic_viscosity: f64,
+    /// Kinematic viscosity or diffusivity of the pressure, the larger, m^2/s; 0 without.
+    pub diffusivity: f64,
     /// Magnitude of the body acceleration, m/s^2.
     pub body_acceleration: f64,
     /// Fraction of each limit that is used.
@@ -42,13 +42,16 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
     /// 1997, eqs. 29 to 31, with the speed added to that of sound).
     fn pace(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<Pace, Fault> {
         let fields = &self.fields;
-        let [v2_max, a2_max] = whole.max(|near| {
-            let mut most = [0.0f64; 2];
+        let [v2_max, a2_max, w2_max] = whole.max(|near| {
+            let mut most = [0.0f64; 3];
             for i in 0..near.spans()[0].len() {
-                let mut squared = [0.0f64; 2];
+                let mut squared = [0.0f64; 3];
                 for (&v, &a) in fields.velocity.iter().zip(&fields.acceleration) {
                     squared[0] += near.state(v).own().whole()[i].as_f64().powi(2);
                     squared[1] += near.rate(a).own().whole()[i].as_f64().powi(2);
+                }
+                for &w in &fields.drift {
+                    squared[2] += near.rate(w).own().whole()[i].as_f64().powi(2);
                 }
                 for (most, x) in most.iter_mut().zip(squared) {
                     *most = if x > *most || x.is_nan() { x } else { *most };
@@ -59,7 +62,7 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
         let (speed, acceleration) = (v2_max.sqrt(), a2_max.sqrt().max(self.body_acceleration));
         let h = self.smoothing_length;
         let sound_limit = 0.25 * h / (self.sound_speed + speed);
-        let viscous_limit = 0.125 * h * h / self.kinematic_viscosity;
+        let viscous_limit = 0.125 * h * h / self.diffusivity;
         let force_limit = 0.25 * (h / acceleration).sqrt();
         if !(speed.is_finite() && acceleration.is_finite()) {
             return Err(Fault::new(format!(
@@ -73,9 +76,10 @@ impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
                 self.sound_speed
             )));
         }
-        // A particle moves by at most t v + t^2 a in the time t, a factor of two allowed for
+        // With its drift, a particle moves by at most t v + t^2 a in the time t, a factor of two allowed for
         // accelerations that grow meanwhile. That must stay within the skin.
         let slack = 0.8 * whole.domain.slack();
+        let speed = speed + w2_max.sqrt();
         let reach = |time: f64| time * speed + time * time * acceleration;
         let skin_limit =
             2.0 * slack / (speed + (speed * speed + 4.0 * acceleration * slack).sqrt());

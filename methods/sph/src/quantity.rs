@@ -22,11 +22,16 @@ pub(crate) enum Quantity {
     MirroredVelocity(usize),
     /// Pressure of the fluid, continued into bodies; 0 in the fluid.
     WallPressure,
+    Pressure,
+    PressureRate,
+    NumberDensity,
+    /// Velocity of a particle besides that of the flow.
+    Drift(usize),
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 24;
+    pub const COUNT: usize = 30;
 
     /// Its place among all.
     #[inline(always)]
@@ -43,6 +48,10 @@ impl Quantity {
             Self::SurfaceVelocity(a) => 17 + a,
             Self::MirroredVelocity(a) => 20 + a,
             Self::WallPressure => 23,
+            Self::Pressure => 24,
+            Self::PressureRate => 25,
+            Self::NumberDensity => 26,
+            Self::Drift(a) => 27 + a,
         }
     }
 

@@ -119,7 +119,7 @@ fn rates(
     Rates {
         position: all.clone().map(|i| std::array::from_fn(|a| at(i, a))).collect(),
         acceleration: all.map(|i| std::array::from_fn(|a| component(i, a))).collect(),
-        density_rate: columns.values(density_rate).to_vec(),
+        density_rate: columns.values(density_rate.unwrap()).to_vec(),
         energy_rate: energy_rate.map(|e| columns.values(e).to_vec()),
     }
 }

@@ -19,7 +19,17 @@ pub fn parameters() -> Vec<Parameter> {
         "",
         "largest random displacement from the lattice at the start, in spacings",
     )];
-    [&taylor_green::PARAMETERS[..], &super::PARAMETERS, &own].concat()
+    super::with_defaults(
+        &[&taylor_green::PARAMETERS, &super::PARAMETERS, &own],
+        &[("transport", 1.0)],
+        &[
+            ("kernel", "quintic-spline"),
+            ("viscous_form", "adami"),
+            ("density", "summation"),
+            ("pressure", "edac"),
+            ("pressure_form", "density-weighted"),
+        ],
+    )
 }
 
 /// Prepares the scene.
@@ -61,6 +71,11 @@ fn build<T: Real>(
         let density = sph.model.columns.values_mut(sph.fields.density);
         for (density, &x) in density.iter_mut().zip(&start.positions) {
             *density = T::of(1.0 + scene.pressure(x) / fluid.sound_speed.powi(2));
+        }
+        if let Some(pressure) = sph.fields.pressure {
+            for (p, &x) in sph.model.columns.values_mut(pressure).iter_mut().zip(&start.positions) {
+                *p = T::of(scene.pressure(x));
+            }
         }
     }
     let scene_hash = super::scene_hash("taylor-green", parameters, precision);

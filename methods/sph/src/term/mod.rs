@@ -4,12 +4,16 @@
 //! particle's sums; the files read like their equations.
 
 pub(crate) mod continuity;
+pub(crate) mod edac;
 pub(crate) mod energy;
 pub(crate) mod momentum;
+pub(crate) mod number_density;
 pub(crate) mod strain_rate;
+pub(crate) mod transport;
 pub(crate) mod viscosity;
 pub(crate) mod wall_pressure;
 pub(crate) mod wall_velocity;
+pub(crate) mod weighted;
 
 use finegrain_framework::Real;
 
@@ -17,12 +21,16 @@ use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 
 use continuity::Continuity;
+use edac::PressureEvolution;
 use energy::Energy;
 use momentum::{PressureGradient, StressDivergence};
+use number_density::NumberDensity;
 use strain_rate::StrainRate;
+use transport::{Drift, DriftStress};
 use viscosity::MorrisViscosity;
 use wall_pressure::WallPressure;
 use wall_velocity::MirroredVelocity;
+use weighted::{WeightedPressureGradient, WeightedViscosity};
 
 /// One piece of physics: a sum over neighbours.
 pub(crate) trait Term<T: Real> {
@@ -60,16 +68,16 @@ pub(crate) trait Term<T: Real> {
 /// Declares the enumeration of all terms, which is itself a term: a choice at run time of what is
 /// compiled into one loop.
 macro_rules! terms {
-    ($($Name:ident),* $(,)?) => {
+    ($($Name:ident $(<$Scalar:ident>)?),* $(,)?) => {
         /// Any term, with its constants.
         #[derive(Clone, Copy, Debug)]
         pub(crate) enum AnyTerm<T> {
-            $($Name($Name<T>),)*
+            $($Name($Name $(<$Scalar>)?),)*
         }
 
         $(
-            impl<T> From<$Name<T>> for AnyTerm<T> {
-                fn from(term: $Name<T>) -> Self {
+            impl<T> From<$Name $(<$Scalar>)?> for AnyTerm<T> {
+                fn from(term: $Name $(<$Scalar>)?) -> Self {
                     Self::$Name(term)
                 }
             }
@@ -87,13 +95,13 @@ macro_rules! terms {
         impl<T: Real> Term<T> for AnyTerm<T> {
             fn reads(&self, dims: usize) -> Vec<Quantity> {
                 match self {
-                    $(Self::$Name(term) => term.reads(dims),)*
+                    $(Self::$Name(term) => Term::<T>::reads(term, dims),)*
                 }
             }
 
             fn writes(&self, dims: usize) -> Vec<Quantity> {
                 match self {
-                    $(Self::$Name(term) => term.writes(dims),)*
+                    $(Self::$Name(term) => Term::<T>::writes(term, dims),)*
                 }
             }
 
@@ -132,14 +140,20 @@ macro_rules! terms {
 }
 
 terms!(
-    Continuity,
-    StrainRate,
-    PressureGradient,
-    StressDivergence,
-    MorrisViscosity,
-    Energy,
-    MirroredVelocity,
-    WallPressure,
+    Continuity<T>,
+    StrainRate<T>,
+    PressureGradient<T>,
+    StressDivergence<T>,
+    MorrisViscosity<T>,
+    Energy<T>,
+    MirroredVelocity<T>,
+    WallPressure<T>,
+    NumberDensity,
+    Drift<T>,
+    DriftStress,
+    PressureEvolution<T>,
+    WeightedPressureGradient<T>,
+    WeightedViscosity<T>,
 );
 
 /// Lanes that a term works with: a weight for each neighbour.
