@@ -130,7 +130,8 @@ fn pieces<T: Real>(
     }];
     if scheme.transport > 0.0 {
         // With p_b = rho c^2 and tau = 0.25 h / c.
-        let strength = T::of(0.25 * scheme.transport * fluid.sound_speed / fluid.density) * h * mass;
+        let strength =
+            T::of(0.25 * scheme.transport * fluid.sound_speed / fluid.density) * h * mass;
         terms.push(Drift { strength }.into());
         terms.push(DriftStress.into());
     }
@@ -265,6 +266,7 @@ fn build<T: Real, const D: usize>(
         diffusivity: diffusivity(fluid, physics, scheme, smoothing_length),
         body_acceleration: magnitude,
         courant_number: scheme.courant_number,
+        transport: scheme.transport,
         most_steps: 20,
     };
     let model = Model {
@@ -281,8 +283,7 @@ fn build<T: Real, const D: usize>(
 /// The largest diffusivity, of momentum or pressure, m^2/s.
 fn diffusivity(fluid: &Fluid, physics: &Physics, scheme: &Scheme, smoothing_length: f64) -> f64 {
     let of_momentum = physics.viscosity.map_or(0.0, |_| fluid.kinematic_viscosity);
-    let of_pressure = scheme.edac.map_or(0.0, |edac| {
-        edac.diffusion * fluid.sound_speed * smoothing_length / 8.0
-    });
+    let of_pressure =
+        scheme.edac.map_or(0.0, |edac| edac.diffusion * fluid.sound_speed * smoothing_length / 8.0);
     of_momentum.max(of_pressure)
 }

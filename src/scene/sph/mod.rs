@@ -1,7 +1,11 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
+pub mod cavity;
+pub mod channel;
 pub mod cylinder;
 pub mod taylor_green;
+
+mod profile;
 
 use std::time::Duration;
 
@@ -55,7 +59,7 @@ const PARAMETERS: [Parameter; 12] = [
     Parameter::number(
         "transport",
         0.0,
-        [0.0, 10.0],
+        [0.0, 20.0],
         "",
         "strength of the transport velocity (Adami et al. 2013); 0 is none, 1 is theirs",
     ),

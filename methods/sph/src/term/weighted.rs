@@ -64,7 +64,8 @@ pub(crate) struct WeightedViscosity<T> {
 impl<T: Real> Term<T> for WeightedViscosity<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
         let velocity = Quantity::vector(Quantity::Velocity, dims);
-        let in_bodies = self.in_bodies.into_iter().flat_map(|v| (0..dims).map(move |a| v.component(a)));
+        let in_bodies =
+            self.in_bodies.into_iter().flat_map(|v| (0..dims).map(move |a| v.component(a)));
         velocity.chain(in_bodies).chain([Quantity::Volume, Quantity::WallDepth]).collect()
     }
 
