@@ -3,6 +3,8 @@
 //! A scene's physics (geometry, fluid, forcing, reference) is in a file of its own; how a method
 //! takes part is in a folder of the method's.
 
+pub mod cavity;
+pub mod channel;
 pub mod cylinder;
 pub mod dam_break;
 pub mod drop;
@@ -168,7 +170,7 @@ pub const SCENES: &[Scene] = &[
     },
     Scene {
         name: "taylor-green",
-        summary: "vortices decaying in a periodic box (Taylor & Green 1937); plain SPH decays them too fast",
+        summary: "vortices decaying in a periodic box (Taylor & Green 1937)",
         methods: &["sph"],
         parameters: sph::taylor_green::parameters,
         prepare: sph::taylor_green::prepare,
@@ -228,6 +230,27 @@ pub const SCENES: &[Scene] = &[
         methods: &["sph"],
         parameters: sph::noh::parameters,
         prepare: sph::noh::prepare,
+    },
+    Scene {
+        name: "couette",
+        summary: "flow between two plates of which one starts to move (Morris et al. 1997)",
+        methods: &["sph"],
+        parameters: sph::channel::parameters,
+        prepare: sph::channel::prepare_couette,
+    },
+    Scene {
+        name: "poiseuille",
+        summary: "flow between two plates that a body force starts (Morris et al. 1997)",
+        methods: &["sph"],
+        parameters: sph::channel::parameters,
+        prepare: sph::channel::prepare_poiseuille,
+    },
+    Scene {
+        name: "cavity",
+        summary: "eddies under a moving lid (Ghia et al. 1982, Botella & Peyret 1998)",
+        methods: &["sph"],
+        parameters: sph::cavity::parameters,
+        prepare: sph::cavity::prepare,
     },
 ];
 

@@ -23,8 +23,13 @@ pub enum Kind {
         /// Largest allowed.
         most: u32,
     },
-    /// One of several names, the first being the default.
-    Choice(&'static [&'static str]),
+    /// One of several names.
+    Choice {
+        /// Default.
+        default: &'static str,
+        /// All.
+        names: &'static [&'static str],
+    },
 }
 
 /// A parameter that a scene declares.
@@ -107,7 +112,35 @@ impl Parameter {
         choices: &'static [&'static str],
         help: &'static str,
     ) -> Self {
-        Self { name, kind: Kind::Choice(choices), unit: "", help }
+        Self { name, kind: Kind::Choice { default: choices[0], names: choices }, unit: "", help }
+    }
+
+    /// The same with another default number.
+    ///
+    /// # Panics
+    /// If it is none or out of range: a mistake in the scene.
+    #[must_use]
+    pub const fn with_default(mut self, value: f64) -> Self {
+        match &mut self.kind {
+            Kind::Number { default, least, most } if *least <= value && value <= *most => {
+                *default = value;
+            }
+            _ => panic!("the default is no number in the valid range"),
+        }
+        self
+    }
+
+    /// The same with another choice as the default.
+    ///
+    /// # Panics
+    /// If it is none of the choices: a mistake in the scene.
+    #[must_use]
+    pub fn with_default_choice(mut self, name: &'static str) -> Self {
+        match &mut self.kind {
+            Kind::Choice { default, names } if names.contains(&name) => *default = name,
+            _ => panic!("{name:?} is no choice of {:?}", self.name),
+        }
+        self
     }
 
     /// The default.
@@ -115,7 +148,7 @@ impl Parameter {
         match self.kind {
             Kind::Number { default, .. } => Value::Number(default),
             Kind::Integer { default, .. } => Value::Integer(default),
-            Kind::Choice(choices) => Value::Choice(choices[0].to_owned()),
+            Kind::Choice { default, .. } => Value::Choice(default.to_owned()),
         }
     }
 
@@ -131,7 +164,7 @@ impl Parameter {
             Kind::Integer { least, most, .. } => {
                 format!("a whole number between {least} and {most}")
             }
-            Kind::Choice(choices) => format!("one of {}", choices.join(", ")),
+            Kind::Choice { names, .. } => format!("one of {}", names.join(", ")),
         }
     }
 
@@ -145,8 +178,8 @@ impl Parameter {
             Kind::Integer { least, most, .. } => {
                 text.parse().ok().filter(|n: &u32| (least..=most).contains(n)).map(Value::Integer)
             }
-            Kind::Choice(choices) => {
-                choices.contains(&text).then(|| Value::Choice(text.to_owned()))
+            Kind::Choice { names, .. } => {
+                names.contains(&text).then(|| Value::Choice(text.to_owned()))
             }
         };
         value.ok_or_else(|| ParameterError::Invalid {

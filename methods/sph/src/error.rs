@@ -24,13 +24,13 @@ pub enum SphError {
         /// Number of velocities.
         velocities: usize,
     },
-    /// Choices that do not go together.
-    #[error("{choice} needs {needs}")]
-    Incompatible {
+    /// A choice that goes only with others.
+    #[error("{choice} goes only with {others}")]
+    Choice {
         /// What was chosen.
         choice: &'static str,
         /// What it needs.
-        needs: &'static str,
+        others: &'static str,
     },
     /// A body makes no sense.
     #[error("body {number}: {cause}")]

@@ -28,9 +28,10 @@ pub struct Fields<T> {
     pub identity: State<u32>,
     /// Volume `m / rho`, m^3 (m^2 in 2-D, m in 1-D), of the present evaluation.
     pub volume: State<T>,
-    /// `p / rho^2` of the present evaluation.
-    pub pressure_term: State<T>,
-    /// Pressure, Pa, of the present evaluation; only if a term uses it.
+    /// `p / rho^2` of the present evaluation; only if the form of the pressure gradient uses it.
+    pub pressure_term: Option<State<T>>,
+    /// Pressure, Pa: evolved, or of the present evaluation if it follows from the density; only if
+    /// a term uses it.
     pub pressure: Option<State<T>>,
     /// Sound speed of each particle, m/s, of the present evaluation; only for gas.
     pub sound_speed: Option<State<T>>,
@@ -45,6 +46,10 @@ pub struct Fields<T> {
     pub acceleration: Vec<Rate<T>>,
     /// Rate of change of the density; only where density evolves.
     pub density_rate: Option<Rate<T>>,
+    /// Rate of change of the pressure; only where pressure evolves.
+    pub pressure_rate: Option<Rate<T>>,
+    /// Sum of the kernel, 1/m^3 (1/m^2 in 2-D); only where it gives the density.
+    pub number_density: Option<Rate<T>>,
     /// Rate of change of the energy.
     pub energy_rate: Option<Rate<T>>,
     /// `mu epsilon / rho^2`, the components xx, (xy, yy, (xz, yz, zz)); only with the viscosity in
@@ -106,8 +111,14 @@ impl<T: Real> Fields<T> {
                 .collect(),
             identity: columns.state("identity"),
             volume: columns.register("volume"),
-            pressure_term: columns.register("pressure_term"),
-            pressure: used(Quantity::Pressure).then(|| columns.register("pressure")),
+            pressure_term: used(Quantity::PressureTerm).then(|| columns.register("pressure_term")),
+            pressure: used(Quantity::Pressure).then(|| {
+                if used(Quantity::PressureRate) {
+                    columns.state("pressure")
+                } else {
+                    columns.register("pressure")
+                }
+            }),
             sound_speed: used(Quantity::SoundSpeed).then(|| columns.register("sound_speed")),
             smoothing_length: used(Quantity::SmoothingLength)
                 .then(|| columns.rate("smoothing_length")),
@@ -118,6 +129,8 @@ impl<T: Real> Fields<T> {
                 .map(|d| columns.rate(&name("acceleration", d)))
                 .collect(),
             density_rate: used(Quantity::DensityRate).then(|| columns.rate("density_rate")),
+            pressure_rate: used(Quantity::PressureRate).then(|| columns.rate("pressure_rate")),
+            number_density: used(Quantity::NumberDensity).then(|| columns.rate("number_density")),
             energy_rate: used(Quantity::EnergyRate).then(|| columns.rate("energy_rate")),
             stress_term: Quantity::symmetric(Quantity::StressTerm, dims)
                 .filter(|&stress| used(stress))
@@ -150,11 +163,14 @@ impl<T: Real> Fields<T> {
         match quantity {
             Quantity::Velocity(a) => Some(Column::State(self.velocity[a])),
             Quantity::Volume => Some(Column::State(self.volume)),
-            Quantity::PressureTerm => Some(Column::State(self.pressure_term)),
+            Quantity::PressureTerm => self.pressure_term.map(Column::State),
+            Quantity::Pressure => self.pressure.map(Column::State),
             Quantity::WallDepth => self.wall_depth.map(Column::State),
             Quantity::StressTerm(k) => self.stress_term.get(k).copied().map(Column::Rate),
             Quantity::Acceleration(a) => Some(Column::Rate(self.acceleration[a])),
             Quantity::DensityRate => self.density_rate.map(Column::Rate),
+            Quantity::PressureRate => self.pressure_rate.map(Column::Rate),
+            Quantity::NumberDensity => self.number_density.map(Column::Rate),
             Quantity::EnergyRate => self.energy_rate.map(Column::Rate),
             Quantity::SurfaceVelocity(a) => {
                 self.surface_velocity.get(a).copied().map(Column::State)
@@ -173,7 +189,6 @@ impl<T: Real> Fields<T> {
             Quantity::Fullness => self.fullness.map(Column::State),
             Quantity::Drift(a) => self.drift.get(a).copied().map(Column::Rate),
             Quantity::Energy => self.energy.map(Column::State),
-            Quantity::Pressure => self.pressure.map(Column::State),
             Quantity::SoundSpeed => self.sound_speed.map(Column::State),
             Quantity::SmoothingLength => self.smoothing_length.map(Column::Rate),
             Quantity::GradH => self.grad_h.map(Column::Rate),

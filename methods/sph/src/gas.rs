@@ -111,7 +111,7 @@ impl<T: Real, const D: usize> GasState<T, D> {
                     density: fields.density,
                     volume: fields.volume,
                     pressure: fields.pressure,
-                    pressure_term: fields.pressure_term,
+                    pressure_term: fields.pressure_term.expect("forces of gas read it"),
                     sound_speed: fields.sound_speed,
                 })
             }),
@@ -156,7 +156,7 @@ impl<T: Real, const D: usize> UpdateStage<Cells<T>> for GasState<T, D> {
 /// Refuses choices that do not make a gas.
 pub(crate) fn check(fluid: &Fluid, physics: &Physics, scheme: &Scheme) -> Result<(), SphError> {
     let requires = |needed: bool, choice, needs| {
-        if needed { Ok(()) } else { Err(SphError::Incompatible { choice, needs }) }
+        if needed { Ok(()) } else { Err(SphError::Choice { choice, others: needs }) }
     };
     let StateEquation::IdealGas { heat_ratio } = fluid.state_equation else {
         let uniform = !scheme.smoothing.is_adaptive();

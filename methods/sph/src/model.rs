@@ -17,18 +17,24 @@ use crate::kernel::Kernel;
 use crate::kernel::adaptive::{AdaptiveKernel, Kernels};
 use crate::pacing::{Sort, TimeStepControl};
 use crate::physics::{Fluid, Physics, Viscosity};
-use crate::scheme::Scheme;
+use crate::quantity::Quantity;
+use crate::scheme::{Density, PressureForm, Scheme};
 use crate::smoothing::Smoothing;
 use crate::start::Start;
 use crate::state_equation::{StateEquation, Thermodynamics};
 use crate::sweep::Sweep;
 use crate::term::continuity::Continuity;
+use crate::term::edac::PressureEvolution;
 use crate::term::energy::Energy;
 use crate::term::momentum::{PressureGradient, StressDivergence};
+use crate::term::number_density::NumberDensity;
 use crate::term::strain_rate::StrainRate;
+use crate::term::transport::{Drift, DriftStress};
 use crate::term::viscosity::MorrisViscosity;
 use crate::term::wall_pressure;
 use crate::term::wall_velocity::MirroredVelocity;
+use crate::term::weighted::{WeightedPressureGradient, WeightedViscosity};
+use crate::term::{AnyTerm, Term};
 use crate::wall::{Friction, NoSlip, VelocityInBodies, Walls};
 use crate::wall_state::WallState;
 
@@ -58,6 +64,10 @@ impl<T: Real> Sph<T> {
         physics.check()?;
         scheme.check()?;
         gas::check(fluid, physics, scheme)?;
+        if scheme.edac.is_some() && physics.energy {
+            let (choice, others) = ("scheme.edac", "physics.energy = false");
+            return Err(SphError::Choice { choice, others });
+        }
         // Built by functions that are not generic, so that the loops of all terms are compiled once,
         // with this crate, and not again in every program that uses it.
         let sph: Box<dyn Any> = if TypeId::of::<T>() == TypeId::of::<f32>() {
@@ -123,6 +133,7 @@ fn pieces_of_bodies<T: Real>(
     scheme: &Scheme,
     kernel: &Kernel<T>,
     mass: T,
+    pressures: &[Quantity],
 ) -> Vec<Piece<T>> {
     let mut pieces = Vec::new();
     // Less than a particle of the fluid at the edge of the support.
@@ -133,8 +144,13 @@ fn pieces_of_bodies<T: Real>(
     }
     if !physics.bodies.is_empty() && scheme.wall_pressure == WallPressure::Extrapolated {
         let body_acceleration = physics.body_acceleration.map(T::of);
-        let term = wall_pressure::WallPressure { mass, body_acceleration, least_kernel };
-        pieces.extend([Piece::Term(term.into()), WallState::piece(fluid, mass)]);
+        let term = wall_pressure::WallPressure {
+            mass,
+            is_given_by_term: !pressures.contains(&Quantity::Pressure),
+            body_acceleration,
+            least_kernel,
+        };
+        pieces.extend([Piece::Term(term.into()), WallState::piece(fluid, mass, pressures)]);
     }
     pieces
 }
@@ -150,28 +166,57 @@ fn pieces<T: Real>(
     let viscosity = physics.viscosity.map_or(0.0, |_| fluid.density * fluid.kinematic_viscosity);
     let (mass, dynamic_viscosity) = (T::of(mass), T::of(viscosity));
     let in_bodies = velocity_in_bodies(physics, scheme);
-    let state_equation = Thermodynamics::piece(fluid, mass);
-    let mut terms = vec![Continuity { mass }.into()];
+    let h = kernel.smoothing_length();
+    let mut terms: Vec<AnyTerm<T>> = vec![match scheme.density {
+        Density::Continuity => Continuity { mass }.into(),
+        Density::Summation => NumberDensity.into(),
+    }];
+    if scheme.transport > 0.0 {
+        // With p_b = rho c^2 and tau = 0.25 h / c.
+        let strength =
+            T::of(0.25 * scheme.transport * fluid.sound_speed / fluid.density) * h * mass;
+        terms.push(Drift { strength }.into());
+        terms.push(DriftStress.into());
+    }
+    if let Some(edac) = scheme.edac {
+        terms.push(
+            PressureEvolution {
+                mass,
+                sound_speed_squared: T::of(fluid.sound_speed * fluid.sound_speed),
+                diffusivity: T::of(edac.diffusion * fluid.sound_speed / 8.0) * h,
+                drifts: scheme.transport > 0.0,
+            }
+            .into(),
+        );
+    }
     if physics.viscosity == Some(Viscosity::StrainRate)
         || (physics.energy && physics.viscosity.is_some())
     {
         terms.push(StrainRate { mass, dynamic_viscosity, in_bodies }.into());
     }
-    terms.push(PressureGradient { mass }.into());
+    terms.push(match scheme.pressure_form {
+        PressureForm::Symmetric => PressureGradient { mass }.into(),
+        PressureForm::DensityWeighted => WeightedPressureGradient { mass }.into(),
+    });
     match physics.viscosity {
         Some(Viscosity::StrainRate) => terms.push(StressDivergence { mass }.into()),
         Some(Viscosity::Morris) => {
-            let h = kernel.smoothing_length();
             let eta_squared = T::of(0.01) * h * h;
             let term = MorrisViscosity { mass, dynamic_viscosity, eta_squared, in_bodies };
             terms.push(term.into());
+        }
+        Some(Viscosity::Adami) => {
+            terms.push(WeightedViscosity { mass, dynamic_viscosity, in_bodies }.into());
         }
         None => {}
     }
     if physics.energy {
         terms.push(Energy { mass, dynamic_viscosity }.into());
     }
-    let of_bodies = pieces_of_bodies(fluid, physics, scheme, kernel, mass);
+    let mut pressures: Vec<_> = terms.iter().flat_map(|term| term.reads(0)).collect();
+    pressures.retain(|p| matches!(p, Quantity::Pressure | Quantity::PressureTerm));
+    let state_equation = Thermodynamics::piece(fluid, scheme, mass, &pressures);
+    let of_bodies = pieces_of_bodies(fluid, physics, scheme, kernel, mass, &pressures);
     terms.into_iter().map(Piece::Term).chain([state_equation]).chain(of_bodies).collect()
 }
 
@@ -263,6 +308,9 @@ fn build<T: Real, const D: usize>(
     if let Some(rate) = fields.density_rate {
         evolution = evolution.with(fields.density, rate);
     }
+    if let (Some(pressure), Some(rate)) = (fields.pressure, fields.pressure_rate) {
+        evolution = evolution.with(pressure, rate);
+    }
     for a in 0..D {
         evolution = evolution
             .with_motion(fields.position[a], fields.velocity[a])
@@ -285,9 +333,10 @@ fn build<T: Real, const D: usize>(
             fields: fields.clone(),
             smoothing_length,
             sound_speed: fluid.sound_speed,
-            kinematic_viscosity: physics.viscosity.map_or(0.0, |_| fluid.kinematic_viscosity),
+            diffusivity: diffusivity(fluid, physics, scheme, smoothing_length),
             body_acceleration: magnitude,
             courant_number: scheme.courant_number,
+            transport: scheme.transport,
             most_steps: 20,
         })
     };
@@ -300,4 +349,12 @@ fn build<T: Real, const D: usize>(
         pacing,
     };
     Ok(Sph { model, fields, particle_mass })
+}
+
+/// The largest diffusivity, of momentum or pressure, m^2/s.
+fn diffusivity(fluid: &Fluid, physics: &Physics, scheme: &Scheme, smoothing_length: f64) -> f64 {
+    let of_momentum = physics.viscosity.map_or(0.0, |_| fluid.kinematic_viscosity);
+    let of_pressure =
+        scheme.edac.map_or(0.0, |edac| edac.diffusion * fluid.sound_speed * smoothing_length / 8.0);
+    of_momentum.max(of_pressure)
 }

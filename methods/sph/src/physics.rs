@@ -71,4 +71,7 @@ pub enum Viscosity {
     /// Morris, Fox & Zhu (1997), eq. 22: one rate stage, second derivative by difference of a
     /// first derivative.
     Morris,
+    /// Adami, Hu & Adams (2012), eq. 9: as Morris, weighted with the squares of the volumes, as the
+    /// density-weighted pressure gradient is.
+    Adami,
 }

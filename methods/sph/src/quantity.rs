@@ -43,11 +43,13 @@ pub(crate) enum Quantity {
     GradH,
     /// Fastest signal between a particle and its neighbours.
     SignalSpeed,
+    PressureRate,
+    NumberDensity,
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 53;
+    pub const COUNT: usize = 55;
 
     /// Its place among all.
     #[inline(always)]
@@ -77,6 +79,8 @@ impl Quantity {
             Self::SmoothingLength => 50,
             Self::GradH => 51,
             Self::SignalSpeed => 52,
+            Self::PressureRate => 53,
+            Self::NumberDensity => 54,
         }
     }
 

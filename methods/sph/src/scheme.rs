@@ -1,9 +1,10 @@
 //! How a scene is discretised.
 
 use finegrain_framework::Integrator;
+use serde::{Deserialize, Serialize};
 
 use crate::body::{WallPressure, WallVelocity};
-use crate::error::{SphError, positive};
+use crate::error::{SphError, not_negative, positive};
 use crate::kernel::SmoothingFunction;
 use crate::smoothing::Smoothing;
 use crate::stabilisation::Stabilisation;
@@ -23,6 +24,15 @@ pub struct Scheme {
     pub courant_number: f64,
     /// How much further than the support cells see, in particle spacings.
     pub skin: f64,
+    /// Where density comes from.
+    pub density: Density,
+    /// Pressure evolves by itself, with diffusion; by the equation of state if `None`.
+    pub edac: Option<Edac>,
+    /// How the pressure of two particles makes a force.
+    pub pressure_form: PressureForm,
+    /// Drift of the particles towards an even distribution, in units of that of Adami, Hu & Adams
+    /// (2013) with a background pressure of `rho c^2` and a time step of `0.25 h / c`; none if 0.
+    pub transport: f64,
     /// Where the pressure in bodies comes from.
     pub wall_pressure: WallPressure,
     /// Which velocity friction sees in bodies.
@@ -44,6 +54,10 @@ impl Default for Scheme {
             integrator: Integrator::Leapfrog,
             courant_number: 1.0,
             skin: 0.2,
+            density: Density::Continuity,
+            edac: None,
+            pressure_form: PressureForm::Symmetric,
+            transport: 0.0,
             wall_pressure: WallPressure::Evolved,
             wall_velocity: WallVelocity::Linear,
             beta_max: 1.5,
@@ -59,6 +73,45 @@ impl Scheme {
         positive("courant_number", self.courant_number)?;
         positive("skin", self.skin)?;
         positive("beta_max", self.beta_max)?;
+        if let Some(edac) = self.edac {
+            not_negative("edac.diffusion", edac.diffusion)?;
+            if self.pressure_form != PressureForm::DensityWeighted {
+                let (choice, others) = ("edac", "pressure_form = DensityWeighted");
+                return Err(SphError::Choice { choice, others });
+            }
+        }
+        not_negative("transport", self.transport)?;
         self.stabilisation.check()
     }
+}
+
+/// Where density comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Density {
+    /// It evolves by the equation of continuity (Holmes et al. 2011, eq. I.1).
+    #[default]
+    Continuity,
+    /// It is a sum over the particles around: mass times number density.
+    Summation,
+}
+
+/// Entropically damped artificial compressibility (Ramachandran & Puri 2019).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Edac {
+    /// Diffusivity of the pressure in units of `h c / 8`; theirs is 0.5.
+    pub diffusion: f64,
+}
+
+/// How the pressure of two particles makes a force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PressureForm {
+    /// `p_i / rho_i^2 + p_j / rho_j^2` (Holmes et al. 2011, eq. I.2).
+    #[default]
+    Symmetric,
+    /// `(rho_j p_i + rho_i p_j) / (rho_i + rho_j) (V_i^2 + V_j^2) / m^2` (Adami, Hu & Adams 2012,
+    /// eq. 6).
+    DensityWeighted,
 }

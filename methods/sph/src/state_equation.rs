@@ -8,6 +8,7 @@ use crate::evaluation::{Piece, Update};
 use crate::fields::Fields;
 use crate::physics::Fluid;
 use crate::quantity::Quantity;
+use crate::scheme::{Density, Scheme};
 
 /// Pressure as a function of density, and for a gas of energy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -85,32 +86,35 @@ impl StateEquation {
     }
 }
 
-/// The update that begins an evaluation: volume and `p / rho^2` from density.
+/// The update that begins an evaluation: what follows from the density, which may itself be a sum,
+/// for particles of one mass.
 #[derive(Clone, Debug)]
 pub(crate) struct Thermodynamics<T> {
     fields: Fields<T>,
-    equation: StateEquation,
+    fluid: Fluid,
     particle_mass: T,
-    reference_density: T,
-    sound_speed: T,
+    /// Whether pressure evolves by itself.
+    has_own_pressure: bool,
 }
 
 impl<T: Real> Thermodynamics<T> {
-    /// For particles of one mass.
-    pub fn piece(fluid: &Fluid, particle_mass: T) -> Piece<T> {
-        let fluid = *fluid;
+    /// The update for a model whose terms see pressure as `pressures`.
+    pub fn piece(
+        fluid: &Fluid,
+        scheme: &Scheme,
+        particle_mass: T,
+        pressures: &[Quantity],
+    ) -> Piece<T> {
+        let (fluid, has_own_pressure) = (*fluid, scheme.edac.is_some());
+        let is_sum = scheme.density == Density::Summation;
+        let written = pressures.iter().filter(|&&p| !has_own_pressure || p != Quantity::Pressure);
         Piece::Update(Update {
-            reads: Vec::new(),
-            writes: vec![Quantity::Volume, Quantity::PressureTerm],
+            reads: if is_sum { vec![Quantity::NumberDensity] } else { Vec::new() },
+            writes: written.copied().chain([Quantity::Volume]).collect(),
             amends: false,
             stage: Box::new(move |fields| {
-                Stage::update(Self {
-                    fields: fields.clone(),
-                    equation: fluid.state_equation,
-                    particle_mass,
-                    reference_density: T::of(fluid.density),
-                    sound_speed: T::of(fluid.sound_speed),
-                })
+                let fields = fields.clone();
+                Stage::update(Self { fields, fluid, particle_mass, has_own_pressure })
             }),
         })
     }
@@ -124,14 +128,31 @@ impl<T: Real> UpdateStage<Cells<T>> for Thermodynamics<T> {
     }
 
     fn update(&self, own: &mut Own<'_, Cells<T>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
-        let density = own.state(self.fields.density).whole();
-        let volume = own.state_mut(self.fields.volume).whole();
-        let pressure_term = own.state_mut(self.fields.pressure_term).whole();
-        for ((&density, volume), pressure_term) in density.iter().zip(volume).zip(pressure_term) {
-            let pressure =
-                self.equation.pressure(density, self.reference_density, self.sound_speed);
+        let (fields, fluid) = (&self.fields, &self.fluid);
+        let density = own.state_mut(fields.density).whole();
+        if let Some(number) = fields.number_density {
+            for (density, &number) in density.iter_mut().zip(own.rate(number).whole()) {
+                // There is no sum for particles of bodies whose density follows from the fluid.
+                if number != T::zero() {
+                    *density = self.particle_mass * number;
+                }
+            }
+        }
+        for (volume, &density) in own.state_mut(fields.volume).whole().iter_mut().zip(&*density) {
             *volume = self.particle_mass / density;
-            *pressure_term = pressure / (density * density);
+        }
+        let (rho, c) = (T::of(fluid.density), T::of(fluid.sound_speed));
+        let pressure = |density: T| fluid.state_equation.pressure(density, rho, c);
+        if let Some(column) = fields.pressure.filter(|_| !self.has_own_pressure) {
+            for (p, &density) in own.state_mut(column).whole().iter_mut().zip(&*density) {
+                *p = pressure(density);
+            }
+        }
+        if let Some(column) = fields.pressure_term {
+            let term = own.state_mut(column).whole();
+            for (term, &density) in term.iter_mut().zip(&*density) {
+                *term = pressure(density) / (density * density);
+            }
         }
         match density.iter().position(|&rho| rho <= T::zero()) {
             None => Ok(()),

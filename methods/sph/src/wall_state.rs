@@ -9,7 +9,7 @@ use crate::physics::Fluid;
 use crate::quantity::Quantity;
 
 /// The update that gives particles of bodies the density that goes with their pressure (Adami, Hu
-/// & Adams 2012, eq. 28), with volume and `p / rho^2`.
+/// & Adams 2012, eq. 28), with all that follows from the two.
 #[derive(Clone, Debug)]
 pub(crate) struct WallState<T> {
     fields: Fields<T>,
@@ -18,12 +18,12 @@ pub(crate) struct WallState<T> {
 }
 
 impl<T: Real> WallState<T> {
-    /// For particles of one mass.
-    pub fn piece(fluid: &Fluid, particle_mass: T) -> Piece<T> {
+    /// For particles of one mass, and terms that see pressure as `pressures`.
+    pub fn piece(fluid: &Fluid, particle_mass: T, pressures: &[Quantity]) -> Piece<T> {
         let fluid = *fluid;
         Piece::Update(Update {
             reads: vec![Quantity::WallPressure],
-            writes: vec![Quantity::Volume, Quantity::PressureTerm],
+            writes: pressures.iter().copied().chain([Quantity::Volume]).collect(),
             amends: true,
             stage: Box::new(move |fields| {
                 Stage::update(Self { fields: fields.clone(), fluid, particle_mass })
@@ -41,27 +41,33 @@ impl<T: Real> UpdateStage<Cells<T>> for WallState<T> {
 
     fn update(&self, own: &mut Own<'_, Cells<T>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
         let fields = &self.fields;
-        let (Some(depth), Some(pressure)) = (fields.wall_depth, fields.wall_pressure) else {
+        let (Some(depth), Some(extrapolated)) = (fields.wall_depth, fields.wall_pressure) else {
             return Ok(());
         };
-        let (depth, pressure) = (own.state(depth).whole(), own.rate(pressure).whole());
+        let (depth, extrapolated) = (own.state(depth).whole(), own.rate(extrapolated).whole());
         let density = own.state_mut(fields.density).whole();
         let volume = own.state_mut(fields.volume).whole();
-        let pressure_term = own.state_mut(fields.pressure_term).whole();
+        let mut pressure = fields.pressure.map(|p| own.state_mut(p).whole());
+        let mut pressure_term = fields.pressure_term.map(|p| own.state_mut(p).whole());
         let (equation, rho, c) =
             (self.fluid.state_equation, T::of(self.fluid.density), T::of(self.fluid.sound_speed));
         for i in 0..depth.len() {
             if depth[i] > T::zero() {
-                density[i] = equation.density(pressure[i], rho, c);
+                density[i] = equation.density(extrapolated[i], rho, c);
                 volume[i] = self.particle_mass / density[i];
-                pressure_term[i] = pressure[i] / (density[i] * density[i]);
-                if density[i].is_nan() || density[i] <= T::zero() {
+                if let Some(pressure) = &mut pressure {
+                    pressure[i] = extrapolated[i];
+                }
+                if let Some(term) = &mut pressure_term {
+                    term[i] = extrapolated[i] / (density[i] * density[i]);
+                }
+                if density[i] <= T::zero() || density[i].is_nan() {
                     return Err(Fault::new(format!(
                         "particle {} in a body has density {}, from a pressure of {}; it must be \
                          positive",
                         own.spans()[0].start + i,
                         density[i],
-                        pressure[i]
+                        extrapolated[i]
                     )));
                 }
             }

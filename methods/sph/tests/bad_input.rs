@@ -4,8 +4,8 @@ use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Settings, Simulation};
 use finegrain_sph::{
-    Fluid, Packing, Physics, Scheme, ShockCapturing, Smoothing, Sph, Start, StateEquation,
-    Viscosity,
+    Body, Edac, Fluid, Packing, Physics, Scheme, ShockCapturing, Smoothing, Sph, Start,
+    StateEquation, Viscosity,
 };
 
 fn start() -> Start {
@@ -44,6 +44,11 @@ fn numbers_outside_their_range() {
     );
     let of_scheme = |scheme: Scheme| complaint(&start(), &FLUID, &physics, &scheme);
     assert!(of_scheme(Scheme { skin: 0.0, ..scheme }).contains("skin is 0"));
+    assert!(of_scheme(Scheme { transport: -1.0, ..scheme }).contains("transport is -1"));
+    let edac = Some(Edac { diffusion: f64::NAN });
+    assert!(of_scheme(Scheme { edac, ..scheme }).contains("edac.diffusion is NaN"));
+    let edac = Some(Edac { diffusion: 0.5 });
+    assert!(of_scheme(Scheme { edac, ..scheme }).contains("edac goes only with pressure_form"));
     assert!(of_scheme(Scheme { courant_number: 0.0, ..scheme }).contains("courant_number"));
     let of_start = |start: Start| complaint(&start, &FLUID, &physics, &scheme);
     assert!(of_start(Start { spacing: -0.1, ..start() }).contains("spacing is -0.1"));
@@ -57,6 +62,11 @@ fn a_body_that_makes_no_sense() {
     let physics = Physics { bodies: vec![body.into()], ..Physics::default() };
     let said = complaint(&start(), &FLUID, &physics, &Scheme::default());
     assert!(said.contains("body 0"), "{said}");
+    let shape = Shape::Sphere { centre: [0.5; 3], radius: 0.1 };
+    let body = Body { shape, surface_velocity: [0.0, f64::INFINITY, 0.0] };
+    let physics = Physics { bodies: vec![body], ..Physics::default() };
+    let said = complaint(&start(), &FLUID, &physics, &Scheme::default());
+    assert!(said.contains("surface_velocity is inf"), "{said}");
 }
 
 #[test]

@@ -11,10 +11,14 @@ use finegrain_sph::{
 
 #[test]
 fn momentum_to_round_off() {
-    for viscosity in [Viscosity::Morris, Viscosity::StrainRate] {
+    for (viscosity, scheme) in [
+        (Viscosity::Morris, Scheme::default()),
+        (Viscosity::StrainRate, Scheme::default()),
+        (Viscosity::Adami, flow::edac()),
+    ] {
         for dims in [2, 3] {
             let (mut simulation, fields, mass) =
-                flow::flow::<f64>(dims, viscosity, false, Settings::default());
+                flow::flow::<f64>(dims, viscosity, &scheme, false, Settings::default());
             simulation.begin().unwrap();
             let before = measure::totals(&mut simulation.whole(), &fields, mass);
             // What could be lost: every particle's momentum, once.

@@ -3,14 +3,19 @@
 mod flow;
 
 use finegrain_framework::Settings;
-use finegrain_sph::{Viscosity, measure};
+use finegrain_sph::{Scheme, Viscosity, measure};
 
 /// All pairs, with the nearest periodic image in every direction.
 #[test]
 fn the_closest_pair_is_that_of_all_pairs() {
     for dims in [2, 3] {
-        let (mut simulation, fields, _) =
-            flow::flow::<f64>(dims, Viscosity::Morris, false, Settings::default());
+        let (mut simulation, fields, _) = flow::flow::<f64>(
+            dims,
+            Viscosity::Morris,
+            &Scheme::default(),
+            false,
+            Settings::default(),
+        );
         simulation.begin().unwrap();
         let found = measure::closest_pair(&mut simulation.whole());
         let region = simulation.domain().region();

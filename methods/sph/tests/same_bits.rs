@@ -5,7 +5,7 @@ mod gas_box;
 
 use finegrain_framework::space::Cells;
 use finegrain_framework::{HandOut, Real, Schedule, Settings, Simulation};
-use finegrain_sph::{ShockCapturing, Viscosity};
+use finegrain_sph::{Scheme, ShockCapturing, Viscosity};
 
 fn hash<T: Real>(mut simulation: Simulation<Cells<T>>) -> u64 {
     // Several paces, so that particles are sorted anew more than once.
@@ -13,8 +13,8 @@ fn hash<T: Real>(mut simulation: Simulation<Cells<T>>) -> u64 {
     simulation.state_hash()
 }
 
-fn same_bits<T: Real>(dims: usize, viscosity: Viscosity) {
-    same_bits_of::<T>(|settings| flow::flow(dims, viscosity, true, settings).0);
+fn same_bits<T: Real>(dims: usize, viscosity: Viscosity, scheme: &Scheme) {
+    same_bits_of::<T>(|settings| flow::flow(dims, viscosity, scheme, true, settings).0);
 }
 
 fn same_bits_of_gas<T: Real>(dims: usize) {
@@ -39,22 +39,27 @@ fn same_bits_of<T: Real>(start: impl Fn(Settings) -> Simulation<Cells<T>>) {
 
 #[test]
 fn one_sweep_in_2d() {
-    same_bits::<f64>(2, Viscosity::Morris);
+    same_bits::<f64>(2, Viscosity::Morris, &Scheme::default());
 }
 
 #[test]
 fn two_sweeps_in_2d() {
-    same_bits::<f64>(2, Viscosity::StrainRate);
+    same_bits::<f64>(2, Viscosity::StrainRate, &Scheme::default());
 }
 
 #[test]
 fn two_sweeps_in_a_thin_3d_box() {
-    same_bits::<f64>(3, Viscosity::StrainRate);
+    same_bits::<f64>(3, Viscosity::StrainRate, &Scheme::default());
 }
 
 #[test]
 fn single_precision() {
-    same_bits::<f32>(3, Viscosity::Morris);
+    same_bits::<f32>(3, Viscosity::Morris, &Scheme::default());
+}
+
+#[test]
+fn three_sweeps_with_pressure_transport_and_walls_from_the_fluid() {
+    same_bits::<f64>(2, Viscosity::Adami, &flow::edac());
 }
 
 #[test]

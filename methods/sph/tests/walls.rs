@@ -19,7 +19,6 @@ fn adami() -> Scheme {
         kernel: SmoothingFunction::QuinticSpline,
         wall_pressure: WallPressure::Extrapolated,
         wall_velocity: WallVelocity::Mirrored,
-        beta_max: 3.0,
         ..Scheme::default()
     }
 }

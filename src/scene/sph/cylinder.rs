@@ -5,7 +5,7 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Real, Simulation};
 use finegrain_sph::packing::Lattice;
-use finegrain_sph::{Fields, Fluid, Packing, Physics, Scheme, Sph, Start, measure};
+use finegrain_sph::{Fields, Fluid, Packing, Physics, Sph, Start, measure};
 
 use super::{Flow, SphScene};
 use crate::scene::cylinder::{self, Cylinder, DENSITY, SIDE};
@@ -14,21 +14,12 @@ use crate::scene::{Precision, Prepared, Report, SceneError};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
-    let own = [
-        Parameter::choice(
-            "packing",
-            &["lattice", "hexagonal"],
-            "square (3-D: cubic) lattice, or close packing",
-        ),
-        Parameter::number(
-            "beta_max",
-            3.0,
-            [1.0, 100.0],
-            "",
-            "largest extrapolation of the velocity into the cylinder",
-        ),
-    ];
-    [&cylinder::PARAMETERS[..], &super::PARAMETERS, &own].concat()
+    let own = [Parameter::choice(
+        "packing",
+        &["lattice", "hexagonal"],
+        "square (3-D: cubic) lattice, or close packing",
+    )];
+    [&cylinder::PARAMETERS[..], &super::PARAMETERS, &super::WALL_PARAMETERS, &own].concat()
 }
 
 /// Prepares the scene.
@@ -80,7 +71,7 @@ fn build<T: Real>(
         bodies: vec![scene.body(lengths).into()],
         ..Physics::default()
     };
-    let scheme = Scheme { beta_max: parameters.number("beta_max"), ..super::scheme(parameters) };
+    let scheme = super::scheme_with_walls(parameters);
     let sph = Sph::new(&start, &fluid, &physics, &scheme)?;
     let volume = lengths[..scene.dims].iter().product();
     let flow = CylinderFlow { scene, volume, sides: [lengths[0], lengths[1]] };

@@ -20,7 +20,6 @@ use crate::scene::{Precision, Prepared, Report, SceneError};
 const GATE_GONE: f64 = 0.5;
 
 const DEFAULTS: Defaults = Defaults {
-    repulsion: 0.5,
     mach: 0.1,
     smoothing_ratio: 1.5,
     artificial_viscosity: 0.1,

@@ -1,5 +1,7 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
+pub mod cavity;
+pub mod channel;
 pub mod cylinder;
 pub mod dam_break;
 pub mod drop;
@@ -13,12 +15,17 @@ pub mod standing_wave;
 pub mod tank;
 pub mod taylor_green;
 
+mod profile;
+
 use std::time::Duration;
 
 use finegrain_framework::run::{Dump, Every, Run, Summary, Until};
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Integrator, Real, Simulation, State};
-use finegrain_sph::{Fields, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity, measure};
+use finegrain_sph::{
+    Density, Edac, Fields, PressureForm, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity,
+    WallPressure, WallVelocity, measure,
+};
 
 use super::parameter::{Parameter, Parameters};
 use super::report::Picture;
@@ -26,7 +33,7 @@ use super::{Orders, Prepared, Report, SceneError};
 use crate::figure::{Axis, Field};
 
 /// Parameters of the discretisation that all SPH scenes share.
-const PARAMETERS: [Parameter; 7] = [
+const PARAMETERS: [Parameter; 12] = [
     Parameter::choice(
         "kernel",
         &[
@@ -43,8 +50,37 @@ const PARAMETERS: [Parameter; 7] = [
     Parameter::number("smoothing_ratio", 1.0, [0.8, 3.0], "", "smoothing length over spacing"),
     Parameter::choice(
         "viscous_form",
-        &["morris", "strain-rate"],
-        "Morris et al. (1997) or eq. I.2 of Holmes et al. (2011)",
+        &["morris", "strain-rate", "adami"],
+        "Morris et al. (1997), eq. I.2 of Holmes et al. (2011) or Adami et al. (2012)",
+    ),
+    Parameter::choice(
+        "density",
+        &["continuity", "summation"],
+        "density evolves by the equation of continuity, or is a sum over particles",
+    ),
+    Parameter::choice(
+        "pressure",
+        &["state-equation", "edac"],
+        "pressure follows from density, or evolves with diffusion (Ramachandran & Puri 2019)",
+    ),
+    Parameter::choice(
+        "pressure_form",
+        &["symmetric", "density-weighted"],
+        "eq. I.2 of Holmes et al. (2011) or Adami et al. (2012)",
+    ),
+    Parameter::number(
+        "edac_diffusion",
+        0.5,
+        [0.0, 10.0],
+        "",
+        "diffusivity of the pressure in units of h c / 8, with edac",
+    ),
+    Parameter::number(
+        "transport",
+        0.0,
+        [0.0, 20.0],
+        "",
+        "strength of the transport velocity (Adami et al. 2013); 0 is none, 1 is theirs",
     ),
     Parameter::number(
         "background_pressure",
@@ -69,6 +105,17 @@ fn scheme(parameters: &Parameters) -> Scheme {
         smoothing_ratio: parameters.number("smoothing_ratio"),
         integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
         courant_number: parameters.number("courant"),
+        density: match parameters.choice("density") {
+            "summation" => Density::Summation,
+            _ => Density::Continuity,
+        },
+        edac: (parameters.choice("pressure") == "edac")
+            .then(|| Edac { diffusion: parameters.number("edac_diffusion") }),
+        pressure_form: match parameters.choice("pressure_form") {
+            "density-weighted" => PressureForm::DensityWeighted,
+            _ => PressureForm::Symmetric,
+        },
+        transport: parameters.number("transport"),
         ..Scheme::default()
     }
 }
@@ -85,9 +132,65 @@ fn kernel(parameters: &Parameters) -> SmoothingFunction {
     }
 }
 
+/// Parameters of the particles that fill bodies, for scenes that have bodies.
+const WALL_PARAMETERS: [Parameter; 3] = [
+    Parameter::choice(
+        "wall_pressure",
+        &["evolved", "extrapolated"],
+        "pressure in bodies: from a density of their own, or from the fluid (Adami et al. 2012)",
+    ),
+    Parameter::choice(
+        "wall_velocity",
+        &["linear", "mirrored"],
+        "velocity in bodies: linear profile (Morris et al. 1997), or of Adami et al. (2012)",
+    ),
+    Parameter::number(
+        "beta_max",
+        3.0,
+        [1.0, 100.0],
+        "",
+        "largest extrapolation of the velocity into bodies, with a linear profile",
+    ),
+];
+
+/// What the parameters say about the discretisation, with bodies.
+fn scheme_with_walls(parameters: &Parameters) -> Scheme {
+    Scheme {
+        wall_pressure: match parameters.choice("wall_pressure") {
+            "extrapolated" => WallPressure::Extrapolated,
+            _ => WallPressure::Evolved,
+        },
+        wall_velocity: match parameters.choice("wall_velocity") {
+            "mirrored" => WallVelocity::Mirrored,
+            _ => WallVelocity::Linear,
+        },
+        beta_max: parameters.number("beta_max"),
+        ..scheme(parameters)
+    }
+}
+
+/// All parameters of a scene, with its own defaults put over those that are shared.
+fn with_defaults(
+    parameters: &[&[Parameter]],
+    numbers: &[(&str, f64)],
+    choices: &[(&str, &'static str)],
+) -> Vec<Parameter> {
+    let own = |parameter: &Parameter| {
+        let number = numbers.iter().find(|(name, _)| *name == parameter.name);
+        let choice = choices.iter().find(|(name, _)| *name == parameter.name);
+        match (number, choice) {
+            (Some(&(_, value)), _) => parameter.with_default(value),
+            (_, Some(&(_, name))) => parameter.with_default_choice(name),
+            _ => *parameter,
+        }
+    };
+    parameters.concat().iter().map(own).collect()
+}
+
 fn viscosity(parameters: &Parameters) -> Viscosity {
     match parameters.choice("viscous_form") {
         "strain-rate" => Viscosity::StrainRate,
+        "adami" => Viscosity::Adami,
         _ => Viscosity::Morris,
     }
 }

@@ -20,7 +20,6 @@ use crate::scene::rotating_patch::{
 use crate::scene::{Precision, Prepared, Report, SceneError};
 
 const DEFAULTS: Defaults = Defaults {
-    repulsion: 0.0,
     mach: 0.1,
     smoothing_ratio: 2.0,
     artificial_viscosity: 0.02,

@@ -8,18 +8,22 @@ pub(crate) mod artificial_viscosity;
 pub(crate) mod conductivity;
 pub(crate) mod continuity;
 pub(crate) mod density_diffusion;
+pub(crate) mod edac;
 pub(crate) mod energy;
 pub(crate) mod gas_pressure;
 pub(crate) mod moment;
 pub(crate) mod momentum;
+pub(crate) mod number_density;
 pub(crate) mod repulsion;
 pub(crate) mod shifting;
 pub(crate) mod shock_viscosity;
 pub(crate) mod strain_rate;
 pub(crate) mod tensile_control;
+pub(crate) mod transport;
 pub(crate) mod viscosity;
 pub(crate) mod wall_pressure;
 pub(crate) mod wall_velocity;
+pub(crate) mod weighted;
 
 use finegrain_framework::Real;
 
@@ -31,18 +35,22 @@ use artificial_viscosity::ArtificialViscosity;
 use conductivity::Conductivity;
 use continuity::Continuity;
 use density_diffusion::DensityDiffusion;
+use edac::PressureEvolution;
 use energy::Energy;
 use gas_pressure::GasPressure;
 use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
+use number_density::NumberDensity;
 use repulsion::Repulsion;
 use shifting::Shifting;
 use shock_viscosity::ShockViscosity;
 use strain_rate::StrainRate;
 use tensile_control::TensileControl;
+use transport::{Drift, DriftStress};
 use viscosity::MorrisViscosity;
 use wall_pressure::WallPressure;
 use wall_velocity::MirroredVelocity;
+use weighted::{WeightedPressureGradient, WeightedViscosity};
 
 /// One piece of physics: a sum over neighbours.
 pub(crate) trait Term<T: Real> {
@@ -80,16 +88,16 @@ pub(crate) trait Term<T: Real> {
 /// Declares the enumeration of all terms, which is itself a term: a choice at run time of what is
 /// compiled into one loop.
 macro_rules! terms {
-    ($($Name:ident),* $(,)?) => {
+    ($($Name:ident $(<$Scalar:ident>)?),* $(,)?) => {
         /// Any term, with its constants.
         #[derive(Clone, Copy, Debug)]
         pub(crate) enum AnyTerm<T> {
-            $($Name($Name<T>),)*
+            $($Name($Name $(<$Scalar>)?),)*
         }
 
         $(
-            impl<T> From<$Name<T>> for AnyTerm<T> {
-                fn from(term: $Name<T>) -> Self {
+            impl<T> From<$Name $(<$Scalar>)?> for AnyTerm<T> {
+                fn from(term: $Name $(<$Scalar>)?) -> Self {
                     Self::$Name(term)
                 }
             }
@@ -107,13 +115,13 @@ macro_rules! terms {
         impl<T: Real> Term<T> for AnyTerm<T> {
             fn reads(&self, dims: usize) -> Vec<Quantity> {
                 match self {
-                    $(Self::$Name(term) => term.reads(dims),)*
+                    $(Self::$Name(term) => Term::<T>::reads(term, dims),)*
                 }
             }
 
             fn writes(&self, dims: usize) -> Vec<Quantity> {
                 match self {
-                    $(Self::$Name(term) => term.writes(dims),)*
+                    $(Self::$Name(term) => Term::<T>::writes(term, dims),)*
                 }
             }
 
@@ -152,25 +160,31 @@ macro_rules! terms {
 }
 
 terms!(
-    Continuity,
-    StrainRate,
-    PressureGradient,
-    StressDivergence,
-    MorrisViscosity,
-    Energy,
-    MirroredVelocity,
-    WallPressure,
-    MomentMatrix,
-    DensitySlope,
-    DensityDiffusion,
-    ArtificialViscosity,
-    ArtificialPressure,
-    TensileControl,
-    Shifting,
-    GasPressure,
-    ShockViscosity,
-    Conductivity,
-    Repulsion,
+    Continuity<T>,
+    StrainRate<T>,
+    PressureGradient<T>,
+    StressDivergence<T>,
+    MorrisViscosity<T>,
+    Energy<T>,
+    MirroredVelocity<T>,
+    WallPressure<T>,
+    MomentMatrix<T>,
+    DensitySlope<T>,
+    DensityDiffusion<T>,
+    ArtificialViscosity<T>,
+    ArtificialPressure<T>,
+    TensileControl<T>,
+    Shifting<T>,
+    GasPressure<T>,
+    ShockViscosity<T>,
+    Conductivity<T>,
+    Repulsion<T>,
+    NumberDensity,
+    Drift<T>,
+    DriftStress,
+    PressureEvolution<T>,
+    WeightedPressureGradient<T>,
+    WeightedViscosity<T>,
 );
 
 /// Lanes that a term works with: a weight for each neighbour.

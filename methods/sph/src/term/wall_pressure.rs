@@ -11,6 +11,8 @@ use crate::quantity::{Quantity, Values};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallPressure<T> {
     pub mass: T,
+    /// Whether the pressure of the fluid is given as `p / rho^2`.
+    pub is_given_by_term: bool,
     /// Acceleration `g` of the fluid by the body force, m/s^2.
     pub body_acceleration: [T; 3],
     /// A sum of the kernel up to here counts as no fluid around, 1/m^3 (1/m^2 in 2-D).
@@ -19,7 +21,11 @@ pub(crate) struct WallPressure<T> {
 
 impl<T: Real> Term<T> for WallPressure<T> {
     fn reads(&self, _: usize) -> Vec<Quantity> {
-        vec![Quantity::Volume, Quantity::PressureTerm]
+        if self.is_given_by_term {
+            vec![Quantity::Volume, Quantity::PressureTerm]
+        } else {
+            vec![Quantity::Volume, Quantity::Pressure]
+        }
     }
 
     fn writes(&self, _: usize) -> Vec<Quantity> {
@@ -49,13 +55,17 @@ impl<T: Real> Term<T> for WallPressure<T> {
         if total <= self.least_kernel {
             return;
         }
-        let (volume, term) = (near.values(Quantity::Volume), near.values(Quantity::PressureTerm));
-        // From p / rho^2.
-        for ((pressure, &volume), &term) in other.iter_mut().zip(volume).zip(term) {
-            let density = self.mass / volume;
-            *pressure = term * density * density;
-        }
-        let [pressure] = T::dots(weight, [&*other]);
+        let volume = near.values(Quantity::Volume);
+        let [pressure] = if self.is_given_by_term {
+            let term = near.values(Quantity::PressureTerm);
+            for ((pressure, &volume), &term) in other.iter_mut().zip(volume).zip(term) {
+                let density = self.mass / volume;
+                *pressure = term * density * density;
+            }
+            T::dots(weight, [&*other])
+        } else {
+            T::dots(weight, [near.values(Quantity::Pressure)])
+        };
         for (weight, &volume) in weight.iter_mut().zip(volume) {
             *weight *= self.mass / volume;
         }

@@ -4,13 +4,31 @@ use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Real, Settings, Simulation, space::Cells};
 use finegrain_sph::{
-    Fields, Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation, Viscosity,
+    Body, Density, Edac, Fields, Fluid, Packing, Physics, PressureForm, Scheme, SmoothingFunction,
+    Sph, Start, StateEquation, Viscosity, WallPressure, WallVelocity,
 };
+
+/// Density as a sum, pressure that evolves by itself, transport velocity, and walls that take both
+/// velocity and pressure from the fluid.
+#[allow(dead_code)]
+pub fn edac() -> Scheme {
+    Scheme {
+        kernel: SmoothingFunction::QuinticSpline,
+        density: Density::Summation,
+        edac: Some(Edac { diffusion: 0.5 }),
+        pressure_form: PressureForm::DensityWeighted,
+        transport: 2.0,
+        wall_pressure: WallPressure::Extrapolated,
+        wall_velocity: WallVelocity::Mirrored,
+        ..Scheme::default()
+    }
+}
 
 /// Vortices in a periodic box from a disturbed lattice, with or without a cylinder in it.
 pub fn flow<T: Real>(
     dims: usize,
     viscosity: Viscosity,
+    scheme: &Scheme,
     has_body: bool,
     settings: Settings,
 ) -> (Simulation<Cells<T>>, Fields<T>, f64) {
@@ -38,11 +56,13 @@ pub fn flow<T: Real>(
             .collect(),
         positions,
     };
-    let body = Shape::Cylinder {
+    let shape = Shape::Cylinder {
         axis: Axis::Z,
         centre: [0.5 * lengths[0], 0.5 * lengths[1], 0.0],
         radius: 0.2,
     };
+    let turns = scheme.wall_velocity == WallVelocity::Mirrored;
+    let body = Body { shape, surface_velocity: [if turns { 0.1 } else { 0.0 }, 0.0, 0.0] };
     let fluid = Fluid {
         density: 1.0,
         sound_speed: 10.0,
@@ -52,10 +72,10 @@ pub fn flow<T: Real>(
     let physics = Physics {
         viscosity: Some(viscosity),
         body_acceleration: if has_body { [0.3, 0.0, 0.0] } else { [0.0; 3] },
-        bodies: if has_body { vec![body.into()] } else { Vec::new() },
+        bodies: if has_body { vec![body] } else { Vec::new() },
         ..Physics::default()
     };
-    let sph = Sph::<T>::new(&start, &fluid, &physics, &Scheme::default()).unwrap();
+    let sph = Sph::<T>::new(&start, &fluid, &physics, scheme).unwrap();
     let simulation = Simulation::new(sph.model, settings).unwrap();
     (simulation, sph.fields, sph.particle_mass)
 }
