@@ -12,6 +12,9 @@ use crate::fields::Fields;
 use crate::quantity::Quantity;
 use crate::term::{AnyTerm, Term};
 
+/// Makes a stage once the columns are known.
+type MakeStage<T> = Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>;
+
 /// Something that is evaluated.
 pub(crate) enum Piece<T: Real> {
     Term(AnyTerm<T>),
@@ -24,7 +27,7 @@ pub(crate) struct Alone<T: Real> {
     pub reads: Vec<Quantity>,
     pub writes: Vec<Quantity>,
     /// Makes it once the columns are known.
-    pub stage: Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>,
+    pub stage: MakeStage<T>,
 }
 
 /// An update of a particle's own quantities.
@@ -32,7 +35,7 @@ pub(crate) struct Update<T: Real> {
     pub reads: Vec<Quantity>,
     pub writes: Vec<Quantity>,
     /// Makes its stage once the columns are known.
-    pub stage: Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>,
+    pub stage: MakeStage<T>,
 }
 
 impl<T: Real> Piece<T> {
