@@ -104,10 +104,8 @@ fn least_eigenvalue(matrix: &Matrix3<f64>, dims: usize) -> f64 {
     match dims {
         1 => matrix[(0, 0)],
         2 => {
-            let (mean, half) = (
-                0.5 * (matrix[(0, 0)] + matrix[(1, 1)]),
-                0.5 * (matrix[(0, 0)] - matrix[(1, 1)]),
-            );
+            let (mean, half) =
+                (0.5 * (matrix[(0, 0)] + matrix[(1, 1)]), 0.5 * (matrix[(0, 0)] - matrix[(1, 1)]));
             mean - half.hypot(matrix[(0, 1)])
         }
         _ => matrix.symmetric_eigenvalues().min(),

@@ -124,9 +124,7 @@ impl<T: Real> Fields<T> {
                 .map(|(k, _)| columns.register(&format!("correction_{k}")))
                 .collect(),
             fullness: used(Quantity::Fullness).then(|| columns.register("fullness")),
-            drift: vector(Quantity::Drift)
-                .map(|d| columns.rate(&name("drift", d)))
-                .collect(),
+            drift: vector(Quantity::Drift).map(|d| columns.rate(&name("drift", d))).collect(),
         }
     }
 
@@ -150,7 +148,9 @@ impl<T: Real> Fields<T> {
             Quantity::WallPressure => self.wall_pressure.map(Column::Rate),
             Quantity::Density => Some(Column::State(self.density)),
             Quantity::DensitySlope(a) => self.density_slope.get(a).copied().map(Column::Rate),
-            Quantity::DensityGradient(a) => self.density_gradient.get(a).copied().map(Column::State),
+            Quantity::DensityGradient(a) => {
+                self.density_gradient.get(a).copied().map(Column::State)
+            }
             Quantity::Moment(k) => self.moment.get(k).copied().map(Column::Rate),
             Quantity::Correction(k) => self.correction.get(k).copied().map(Column::State),
             Quantity::Fullness => self.fullness.map(Column::State),

@@ -5,8 +5,8 @@ use finegrain_framework::shape::Shape;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Settings, Simulation, space::Cells};
 use finegrain_sph::{
-    Body, Fields, Fluid, Packing, Physics, Scheme, Slip, SmoothingFunction, Sph, Start,
-    StateEquation, Viscosity, WallPressure, WallVelocity,
+    Body, Fields, Fluid, Packing, Physics, Scheme, Slip, SmoothingFunction, Sph, Stabilisation,
+    Start, StateEquation, Viscosity, WallPressure, WallVelocity,
 };
 
 const SPACING: f64 = 0.05;
@@ -22,6 +22,7 @@ const ADAMI: Scheme = Scheme {
     wall_pressure: WallPressure::Extrapolated,
     wall_velocity: WallVelocity::Mirrored,
     beta_max: 3.0,
+    stabilisation: Stabilisation::NONE,
 };
 
 /// Fluid of the given density between y = 0.2 and 0.8, moving along x at `speed`, in a box that is

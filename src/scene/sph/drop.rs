@@ -18,7 +18,6 @@ use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::{Precision, Prepared, Report, SceneError};
 
 const DEFAULTS: Defaults = Defaults {
-    repulsion: 0.0,
     // c = 1400 m/s where the edge of the elliptic drop moves at 100 m/s, as Monaghan (1994).
     mach: 1.0 / 14.0,
     smoothing_ratio: 1.5,

@@ -74,7 +74,11 @@ pub(super) fn parameters(defaults: &Defaults) -> Vec<Parameter> {
             defaults.tension,
             "against clumping under tension: Sun et al. (2018) or Monaghan (2000)",
         ),
-        Parameter::choice("shifting", defaults.shifting, "shifting of particles, Sun et al. (2017)"),
+        Parameter::choice(
+            "shifting",
+            defaults.shifting,
+            "shifting of particles, Sun et al. (2017)",
+        ),
     ]
 }
 

@@ -16,7 +16,6 @@ use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::{Precision, Prepared, Report, SceneError};
 
 const DEFAULTS: Defaults = Defaults {
-    repulsion: 0.0,
     mach: 0.1,
     smoothing_ratio: 2.0,
     artificial_viscosity: 0.1,
@@ -28,7 +27,7 @@ const DEFAULTS: Defaults = Defaults {
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let of_method = free_surface::parameters(&DEFAULTS);
-    [&hydrostatic_tank::PARAMETERS[..], &of_method, &tank::PARAMETERS].concat()
+    [&hydrostatic_tank::PARAMETERS[..], &of_method, &tank::parameters(0.0)].concat()
 }
 
 /// Prepares the scene.
@@ -55,9 +54,7 @@ fn build<T: Real>(
     let positions = start.positions.clone();
     tank::settle(&mut start, &scene.tank, DEPTH, fluid.sound_speed);
     let mut sph = Sph::<T>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
-    free_surface::set_pressure(&mut sph, &fluid, &positions, |x| {
-        scene.pressure(x[1].min(DEPTH))
-    });
+    free_surface::set_pressure(&mut sph, &fluid, &positions, |x| scene.pressure(x[1].min(DEPTH)));
     let scene_hash = super::scene_hash("hydrostatic-tank", parameters, precision);
     Ok(SphScene { sph, flow: TankFlow { scene, fluid }, scene_hash })
 }

@@ -20,7 +20,6 @@ use crate::scene::rotating_patch::{
 use crate::scene::{Precision, Prepared, Report, SceneError};
 
 const DEFAULTS: Defaults = Defaults {
-    repulsion: 0.0,
     mach: 0.1,
     smoothing_ratio: 2.0,
     artificial_viscosity: 0.02,
@@ -92,7 +91,8 @@ fn angular_momentum<T: Real>(
     mass: f64,
 ) -> f64 {
     let [sum] = whole.sum(|near| {
-        let value = |k: usize, of: &[finegrain_framework::State<T>]| near.state(of[k]).own().whole();
+        let value =
+            |k: usize, of: &[finegrain_framework::State<T>]| near.state(of[k]).own().whole();
         let (x, y) = (value(0, &fields.position), value(1, &fields.position));
         let (u, v) = (value(0, &fields.velocity), value(1, &fields.velocity));
         let of = |i: usize| x[i].as_f64() * v[i].as_f64() - y[i].as_f64() * u[i].as_f64();
@@ -112,13 +112,8 @@ impl<T: Real> Flow<T> for PatchFlow {
         let (fields, fluid) = (fields.clone(), self.fluid);
         let radius = 2.0 * Flow::<T>::spacing(self);
         let scale = DENSITY * (ANGULAR_VELOCITY * SIDE).powi(2);
-        let columns = [
-            "angular_momentum",
-            "centre_pressure",
-            "momentum_x",
-            "momentum_y",
-            "largest_speed",
-        ];
+        let columns =
+            ["angular_momentum", "centre_pressure", "momentum_x", "momentum_y", "largest_speed"];
         run.monitor("patch", every, columns, move |whole| {
             let [x, y, _] = measure::totals(whole, &fields, mass).momentum;
             [
