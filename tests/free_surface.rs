@@ -30,7 +30,6 @@ fn elliptic_drop() {
 fn oscillating_drop() {
     let report = run("oscillating-drop", &[("resolution", "15")]);
     are(&report.errors, &[("period", -0.02, 0.02)]);
-    // Coarse as it is; a third of it with 20 points along the radius.
     are(&report.results, &[("energy_change", -0.1, 1e-3)]);
 }
 
