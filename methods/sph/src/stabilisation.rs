@@ -74,6 +74,16 @@ pub enum DiffusionForm {
 }
 
 impl Stabilisation {
+    /// Nothing.
+    pub const NONE: Self = Self {
+        artificial_viscosity: None,
+        density_diffusion: None,
+        artificial_pressure: None,
+        tensile_control: false,
+        shifting: None,
+        repulsion: None,
+    };
+
     pub(crate) fn check(&self) -> Result<(), SphError> {
         if let Some(ArtificialViscosity { alpha, beta }) = self.artificial_viscosity {
             not_negative("artificial viscosity alpha", alpha)?;

@@ -4,8 +4,8 @@ use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Settings, Simulation};
 use finegrain_sph::{
-    Body, Edac, Fluid, Packing, Physics, Scheme, ShockCapturing, Smoothing, Sph, Start,
-    StateEquation, Viscosity,
+    ArtificialViscosity, Body, DensityDiffusion, DiffusionForm, Edac, Fluid, Packing, Physics,
+    Scheme, ShockCapturing, Smoothing, Sph, Stabilisation, Start, StateEquation, Viscosity,
 };
 
 fn start() -> Start {
@@ -54,6 +54,28 @@ fn numbers_outside_their_range() {
     assert!(of_start(Start { spacing: -0.1, ..start() }).contains("spacing is -0.1"));
     assert!(of_start(Start { positions: Vec::new(), ..start() }).contains("0 particles"));
     assert!(of_start(Start { velocities: vec![[0.0; 3]], ..start() }).contains("1 velocities"));
+}
+
+#[test]
+fn stabilisation_outside_its_range() {
+    let of = |stabilisation: Stabilisation| {
+        let scheme = Scheme { stabilisation, ..Scheme::default() };
+        complaint(&start(), &FLUID, &Physics::default(), &scheme)
+    };
+    let none = Stabilisation::default();
+    let viscosity = |alpha, beta| Some(ArtificialViscosity { alpha, beta });
+    let diffusion = |delta| Some(DensityDiffusion { form: DiffusionForm::Antuono, delta });
+    for (stabilisation, name) in [
+        (Stabilisation { artificial_viscosity: viscosity(-0.1, 0.0), ..none }, "alpha is -0.1"),
+        (Stabilisation { artificial_viscosity: viscosity(0.0, f64::NAN), ..none }, "beta is NaN"),
+        (Stabilisation { density_diffusion: diffusion(-1.0), ..none }, "delta is -1"),
+        (Stabilisation { artificial_pressure: Some(-0.2), ..none }, "artificial pressure is -0.2"),
+        (Stabilisation { shifting: Some(0.0), ..none }, "speed of shifting is 0"),
+        (Stabilisation { repulsion: Some(f64::INFINITY), ..none }, "repulsion is inf"),
+    ] {
+        let said = of(stabilisation);
+        assert!(said.contains(name), "{said}");
+    }
 }
 
 #[test]

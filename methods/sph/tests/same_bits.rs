@@ -3,9 +3,14 @@
 mod flow;
 mod gas_box;
 
+use finegrain_framework::shape::Shape;
 use finegrain_framework::space::Cells;
+use finegrain_framework::space::cells::Region;
 use finegrain_framework::{HandOut, Real, Schedule, Settings, Simulation};
-use finegrain_sph::{Scheme, ShockCapturing, Viscosity};
+use finegrain_sph::{
+    ArtificialViscosity, DensityDiffusion, DiffusionForm, Fluid, Physics, Scheme, ShockCapturing,
+    Slip, SmoothingFunction, Sph, Stabilisation, Start, StateEquation, Viscosity, WallPressure,
+};
 
 fn hash<T: Real>(mut simulation: Simulation<Cells<T>>) -> u64 {
     // Several paces, so that particles are sorted anew more than once.
@@ -71,4 +76,56 @@ fn gas_in_1d_and_2d() {
 #[test]
 fn gas_in_3d_and_single_precision() {
     same_bits_of_gas::<f32>(3);
+}
+
+/// Water that falls over in a corner, with everything against noise and clumping.
+fn splash(settings: Settings) -> Simulation<Cells<f64>> {
+    let spacing = 0.05;
+    let at = |i: i32| (f64::from(i) + 0.5) * spacing;
+    let positions: Vec<_> = (-3..10)
+        .flat_map(|j| (-3..20).map(move |i| (i, j)))
+        .filter(|&(i, j)| i < 0 || j < 0 || i < 8)
+        .map(|(i, j)| [at(i), at(j), 0.0])
+        .collect();
+    let start = Start {
+        region: Region { lower: vec![-0.2; 2], upper: vec![1.0; 2], periodic: vec![false; 2] },
+        spacing,
+        particle_volume: spacing * spacing,
+        positions,
+        velocities: Vec::new(),
+    };
+    let fluid = Fluid {
+        density: 1.0,
+        sound_speed: 30.0,
+        kinematic_viscosity: 0.0,
+        state_equation: StateEquation::Tait { exponent: 7.0, background: 0.0 },
+    };
+    let wall = |outward| Shape::HalfSpace { point: [0.0; 3], outward }.into();
+    let physics = Physics {
+        body_acceleration: [0.0, -9.81, 0.0],
+        bodies: vec![wall([1.0, 0.0, 0.0]), wall([0.0, 1.0, 0.0])],
+        slip: Slip::Free,
+        ..Physics::default()
+    };
+    let scheme = Scheme {
+        kernel: SmoothingFunction::WendlandC2,
+        smoothing_ratio: 1.5,
+        wall_pressure: WallPressure::Extrapolated,
+        stabilisation: Stabilisation {
+            artificial_viscosity: Some(ArtificialViscosity { alpha: 0.1, beta: 0.1 }),
+            density_diffusion: Some(DensityDiffusion { form: DiffusionForm::Antuono, delta: 0.1 }),
+            artificial_pressure: Some(0.2),
+            tensile_control: true,
+            shifting: Some(3.0),
+            repulsion: Some(9.0),
+        },
+        ..Scheme::default()
+    };
+    let sph = Sph::<f64>::new(&start, &fluid, &physics, &scheme).unwrap();
+    Simulation::new(sph.model, settings).unwrap()
+}
+
+#[test]
+fn a_free_surface_with_everything_against_noise() {
+    same_bits_of(splash);
 }

@@ -1,7 +1,9 @@
 //! The dam break in SPH.
 //!
 //! The defaults: the diffusion of density that knows the gradient of the density against the noise
-//! of impacts, and the artificial viscosity that is usual where water hits walls.
+//! of impacts; the artificial viscosity and the repulsion by walls that keep single particles of
+//! spray from slipping through the far wall. Without the repulsion seven did with 20 particles
+//! along the width, with the repulsion and a fifth of the viscosity one.
 
 use finegrain_framework::run::{Every, Run, Summary};
 use finegrain_framework::space::Cells;
@@ -31,7 +33,7 @@ const DEFAULTS: Defaults = Defaults {
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let of_method = free_surface::parameters(&DEFAULTS);
-    [&dam_break::PARAMETERS[..], &of_method, &tank::PARAMETERS].concat()
+    [&dam_break::PARAMETERS[..], &of_method, &tank::parameters(0.5)].concat()
 }
 
 /// Prepares the scene.

@@ -27,7 +27,7 @@ const DEFAULTS: Defaults = Defaults {
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let of_method = free_surface::parameters(&DEFAULTS);
-    [&hydrostatic_tank::PARAMETERS[..], &of_method, &tank::PARAMETERS].concat()
+    [&hydrostatic_tank::PARAMETERS[..], &of_method, &tank::parameters(0.0)].concat()
 }
 
 /// Prepares the scene.

@@ -2,8 +2,7 @@
 //!
 //! The defaults: under tension, sums of pressures pull particles into clumps. Tensile control makes
 //! differences of them inside of the fluid, shifting keeps the particles even where the flow
-//! draws them out to filaments, and the delta-SPH diffusion takes the noise out of the pressure;
-//! without any one of the first two the patch falls to pieces.
+//! draws them out to filaments, and the delta-SPH diffusion takes the noise out of the pressure.
 
 use finegrain_framework::run::{Every, Run, Summary};
 use finegrain_framework::space::Cells;

@@ -27,7 +27,7 @@ const DEFAULTS: Defaults = Defaults {
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let of_method = free_surface::parameters(&DEFAULTS);
-    [&standing_wave::PARAMETERS[..], &of_method, &tank::PARAMETERS].concat()
+    [&standing_wave::PARAMETERS[..], &of_method, &tank::parameters(0.0)].concat()
 }
 
 /// Prepares the scene.
@@ -100,7 +100,8 @@ impl<T: Real> Flow<T> for WaveFlow {
     }
 
     /// `period`, from the moments when the water turns;
-    /// `energy_growth` and `energy_change` over the energy of the wave; `through_walls`, the most
+    /// `energy_growth` over all energy, that in gravity counted from the bottom;
+    /// `wave_energy_growth` and `wave_energy_change` over that of the wave alone; `through_walls`, the most
     /// particles beyond a wall at any time.
     fn judge(
         &self,
@@ -113,8 +114,12 @@ impl<T: Real> Flow<T> for WaveFlow {
         if let Some([growth, change]) =
             free_surface::energy_changes(&summary.histories, self.scene.energy())
         {
-            report.result("energy_growth", growth, None);
-            report.result("energy_change", change, None);
+            report.result("wave_energy_growth", growth, None);
+            report.result("wave_energy_change", change, None);
+            let all = summary.histories[0].column("total_energy").and_then(|mut e| e.next());
+            if let Some(all) = all {
+                report.result("energy_growth", growth * self.scene.energy() / all, None);
+            }
         }
         if let Some(beyond) = summary.histories[1].column("through_walls") {
             report.result("through_walls", beyond.fold(0.0, f64::max), None);

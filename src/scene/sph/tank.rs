@@ -13,22 +13,24 @@ use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::tank::{DENSITY, GRAVITY, Tank};
 
 /// Parameters that scenes in a tank have besides.
-pub(super) const PARAMETERS: [Parameter; 2] = [
-    Parameter::choice(
-        "walls",
-        &["extrapolated", "evolved"],
-        "pressure in the walls: from the fluid (Adami et al. 2012), or virtual particles that repel by \
+pub(super) fn parameters(repulsion: f64) -> [Parameter; 2] {
+    [
+        Parameter::choice(
+            "walls",
+            &["extrapolated", "evolved"],
+            "pressure in the walls: from the fluid (Adami et al. 2012), or virtual particles that repel by \
      being compressed (Monaghan 1994)",
-    ),
-    Parameter::number(
-        "repulsion",
-        0.0,
-        [0.0, 10.0],
-        "",
-        "repulsion of what is nearer than a spacing to particles of walls (Monaghan 1994), in units \
+        ),
+        Parameter::number(
+            "repulsion",
+            repulsion,
+            [0.0, 10.0],
+            "",
+            "repulsion of what is nearer than a spacing to particles of walls (Monaghan 1994), in units \
          of the square of the largest speed",
-    ),
-];
+        ),
+    ]
+}
 
 /// Water with a numerical sound speed, m/s.
 pub(super) fn water(parameters: &Parameters, sound_speed: f64) -> Fluid {

@@ -1,0 +1,62 @@
+//! The scenes with a free surface meet their bars, coarsely, with their defaults.
+
+use std::collections::BTreeMap;
+
+use finegrain::scene::{Orders, Precision, Report, Scene};
+
+fn run(name: &str, settings: &[(&str, &str)]) -> Report {
+    let scene = Scene::find(name).unwrap();
+    let parameters = scene.set(settings.iter().copied()).unwrap();
+    let prepared = scene.prepare(None, &parameters, Precision::F64).unwrap();
+    prepared.run(Orders::default()).unwrap()
+}
+
+/// Checks that results lie between two ends.
+fn are(results: &BTreeMap<&'static str, f64>, bounds: &[(&str, f64, f64)]) {
+    for &(name, least, most) in bounds {
+        let value = results[name];
+        assert!((least..=most).contains(&value), "{name} is {value}, not in {least} to {most}");
+    }
+}
+
+#[test]
+fn elliptic_drop() {
+    let report = run("elliptic-drop", &[("resolution", "20")]);
+    are(&report.errors, &[("semi_axis_x", -0.02, 0.02), ("semi_axis_y", -0.02, 0.02)]);
+    are(&report.results, &[("energy_growth", 0.0, 1e-3), ("energy_change", -0.02, 1e-3)]);
+}
+
+#[test]
+fn oscillating_drop() {
+    let report = run("oscillating-drop", &[("resolution", "15")]);
+    are(&report.errors, &[("period", -0.02, 0.02)]);
+    are(&report.results, &[("energy_change", -0.1, 1e-3)]);
+}
+
+#[test]
+fn rotating_patch() {
+    let report = run("rotating-patch", &[("resolution", "30")]);
+    are(&report.errors, &[("angular_momentum", -0.01, 0.01), ("centre_pressure", -0.05, 0.05)]);
+    are(&report.results, &[("voids", 0.0, 0.0), ("energy_growth", 0.0, 1e-3)]);
+}
+
+#[test]
+fn standing_wave() {
+    let report = run("standing-wave", &[("resolution", "20")]);
+    are(&report.errors, &[("period", -0.02, 0.02)]);
+    are(&report.results, &[("energy_growth", 0.0, 1e-3), ("through_walls", 0.0, 0.0)]);
+}
+
+#[test]
+fn dam_break() {
+    let report = run("dam-break", &[("resolution", "15")]);
+    are(&report.errors, &[("front", 0.0, 0.05)]);
+    are(&report.results, &[("through_walls", 0.0, 0.0)]);
+}
+
+#[test]
+fn hydrostatic_tank() {
+    let report = run("hydrostatic-tank", &[("resolution", "12"), ("width", "0.5")]);
+    are(&report.errors, &[("pressure_l2", 0.0, 0.01)]);
+    are(&report.results, &[("largest_speed", 0.0, 0.01), ("speed_trend", 0.0, 1.0)]);
+}
