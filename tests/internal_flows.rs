@@ -5,11 +5,7 @@ use std::collections::BTreeMap;
 
 use finegrain::scene::{Orders, Precision, Scene};
 
-fn errors(
-    scene: &str,
-    settings: &[(&str, &str)],
-    until: Option<f64>,
-) -> BTreeMap<&'static str, f64> {
+fn errors(scene: &str, settings: &[(&str, &str)]) -> BTreeMap<&'static str, f64> {
     let scene = Scene::find(scene).unwrap();
     let parameters = scene.set(settings.iter().copied()).unwrap();
     let prepared = scene.prepare(Some("sph"), &parameters, Precision::F64).unwrap();

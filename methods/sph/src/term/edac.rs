@@ -7,10 +7,12 @@ use super::{Term, Work};
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 
-/// `rho_i c^2 sum_j V_j v_ij . grad_i W_ij
-///  + nu / V_i sum_j (V_i^2 + V_j^2) (p_i - p_j) F_ij + w_i . grad p_i`, Pa/s (eq. 18): compression,
-/// diffusion, and, where particles drift with a velocity `w` besides that of the flow, the pressure
-/// that they drift into.
+/// Rate of change of the pressure, Pa/s (eq. 18), the sum of
+///
+/// - compression: `rho_i c^2 sum_j V_j v_ij . grad_i W_ij`,
+/// - diffusion: `nu / V_i sum_j (V_i^2 + V_j^2) (p_i - p_j) F_ij`,
+/// - and, where particles drift with a velocity `w` besides that of the flow, the pressure that
+///   they drift into: `w_i . sum_j V_j (p_j - p_i) grad_i W_ij`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PressureEvolution<T> {
     pub mass: T,
