@@ -12,9 +12,6 @@ use crate::fields::Fields;
 use crate::quantity::Quantity;
 use crate::term::{AnyTerm, Term};
 
-/// Makes a stage once the columns are known.
-type MakeStage<T> = Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>;
-
 /// Something that is evaluated.
 pub(crate) enum Piece<T: Real> {
     Term(AnyTerm<T>),

@@ -106,7 +106,7 @@ fn accelerations(
 
 fn density_rates(case: &Case, density: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
     let (simulation, fields) = case.evaluate(at_rest, density);
-    let rates = by_number(&simulation, &fields, &[fields.density_rate]);
+    let rates = by_number(&simulation, &fields, &[fields.density_rate.unwrap()]);
     rates.into_iter().map(|[rate, _]| rate).collect()
 }
 
