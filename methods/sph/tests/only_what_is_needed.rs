@@ -77,7 +77,7 @@ fn viscosity() {
 #[test]
 fn bodies() {
     let body = Shape::Sphere { centre: [0.5, 0.5, 0.0], radius: 0.2 };
-    adds(&Physics { bodies: vec![body], ..Physics::default() }, &["wall_depth"]);
+    adds(&Physics { bodies: vec![body.into()], ..Physics::default() }, &["wall_depth"]);
 }
 
 #[test]
