@@ -56,7 +56,7 @@ fn dam_break() {
 
 #[test]
 fn hydrostatic_tank() {
-    let report = run("hydrostatic-tank", &[("resolution", "12"), ("width", "0.5")]);
+    let report = run("hydrostatic-tank", &[("resolution", "16"), ("width", "0.5")]);
     are(&report.errors, &[("pressure_l2", 0.0, 0.01)]);
     are(&report.results, &[("largest_speed", 0.0, 0.01), ("speed_trend", 0.0, 1.0)]);
 }

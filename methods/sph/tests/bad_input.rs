@@ -129,7 +129,12 @@ fn choices_that_do_not_make_a_gas() {
     };
     assert!(Sph::<f64>::new(&start(), &gas, &physics, &scheme).is_ok());
     said(&FLUID, &physics, &scheme, "goes only with an ideal gas");
-    said(&gas, &physics, &Scheme::default(), "goes only with a smoothing length that follows the density");
+    said(
+        &gas,
+        &physics,
+        &Scheme::default(),
+        "goes only with a smoothing length that follows the density",
+    );
     said(&gas, &Physics::default(), &scheme, "goes only with the energy equation");
     let viscous = Physics { viscosity: Some(Viscosity::Morris), ..physics.clone() };
     said(&gas, &viscous, &scheme, "goes only with no laminar viscosity");
