@@ -159,7 +159,11 @@ pub fn measure(plan: &Plan, mut say: impl FnMut(&Row)) -> Result<Vec<Row>, Scene
 }
 
 /// Steps after which the next number of workers has its turn.
-const TURN: u64 = 2;
+const TURN: u64 = 10;
+
+/// Steps before the clock starts: in the middle between two results dumps, so that a dump is written
+/// while its own turn's steps go on.
+const WARM_UP: u64 = 5;
 
 fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Row>, SceneError> {
     let mut rows = Vec::new();
@@ -181,12 +185,12 @@ fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Ro
 }
 
 /// A row for each number of workers without samples yet: what does not need a clock, from a run of
-/// one turn with nothing else in memory.
+/// the first steps with nothing else in memory.
 fn empty_rows<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> {
     let mut rows = Vec::new();
     for &workers in &plan.workers {
         memory::reset_peak();
-        let mut run = start_run::<T>(plan, width, workers)?.until(steps(TURN));
+        let mut run = start_run::<T>(plan, width, workers)?;
         run.run()?;
         // Before anything else is allocated.
         let peak_memory = memory::peak();
@@ -209,15 +213,18 @@ fn empty_rows<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> 
 }
 
 /// Seconds a step of one sample for each number of workers, results dumps included, initial
-/// preparations not.
+/// preparations and the first steps not.
 fn sample<T: Real>(plan: &Plan, width: f64) -> Result<Vec<f64>, SceneError> {
     let start = |&workers| start_run::<T>(plan, width, workers);
     let mut runs = plan.workers.iter().map(start).collect::<Result<Vec<_>, _>>()?;
     let mut seconds = vec![0.0; runs.len()];
+    for run in &mut runs {
+        run.run()?;
+    }
     let mut done = 0;
     while done < plan.steps {
         done = (done + TURN).min(plan.steps);
-        runs = runs.into_iter().map(|run| run.until(steps(done))).collect();
+        runs = runs.into_iter().map(|run| run.until(steps(WARM_UP + done))).collect();
         for (run, seconds) in runs.iter_mut().zip(&mut seconds) {
             *seconds += run.run()?.wall_clock.as_secs_f64() / plan.steps as f64;
         }
@@ -234,7 +241,7 @@ pub fn dump_folder(plan: &Plan, workers: usize) -> PathBuf {
     plan.out.join(format!("workers-{workers}"))
 }
 
-/// A run that is ready for its first step.
+/// A run that is ready for its first step, and to end when it is warm.
 fn start_run<T: Real>(
     plan: &Plan,
     width: f64,
@@ -250,7 +257,7 @@ fn start_run<T: Real>(
         .scalar("density")
         .vector("velocity", ["velocity_x", "velocity_y", "velocity_z"]);
     // The runs of different numbers of workers are under way at the same time.
-    Ok(Run::new(simulation).out(dump_folder(plan, workers)).dump(dump))
+    Ok(Run::new(simulation).out(dump_folder(plan, workers)).dump(dump).until(steps(WARM_UP)))
 }
 
 /// Writes the numbers as CSV.
