@@ -16,7 +16,7 @@ use finegrain_sph::{Fields, Fluid, Packing, Physics, Sph, Start, measure};
 use super::{Flow, SphScene};
 use crate::scene::cylinder::{self, Cylinder, DENSITY, SIDE};
 use crate::scene::parameter::{Parameter, Parameters};
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
@@ -36,16 +36,7 @@ pub fn parameters() -> Vec<Parameter> {
     )
 }
 
-/// Prepares the scene.
-pub fn prepare(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
-    })
-}
+prepare_with!(build);
 
 fn build<T: Real>(
     parameters: &Parameters,

@@ -15,7 +15,7 @@ use super::{Flow, SphScene, tank};
 use crate::scene::dam_break::{self, DamBreak, HEIGHT, WIDTH};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::tank::{DENSITY, GRAVITY};
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 /// From here on the front of the experiment is that of water without a gate, in its unit of time:
 /// only the first row of the table is before.
@@ -36,16 +36,7 @@ pub fn parameters() -> Vec<Parameter> {
     [&dam_break::PARAMETERS[..], &of_method, &tank::parameters(0.5)].concat()
 }
 
-/// Prepares the scene.
-pub fn prepare(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
-    })
-}
+prepare_with!(build);
 
 fn build<T: Real>(
     parameters: &Parameters,

@@ -13,7 +13,7 @@ use super::free_surface::{self, Defaults};
 use super::{Flow, SphScene, tank};
 use crate::scene::hydrostatic_tank::{self, DEPTH, HydrostaticTank};
 use crate::scene::parameter::{Parameter, Parameters};
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 const DEFAULTS: Defaults = Defaults {
     mach: 0.1,
@@ -30,16 +30,7 @@ pub fn parameters() -> Vec<Parameter> {
     [&hydrostatic_tank::PARAMETERS[..], &of_method, &tank::parameters(0.0)].concat()
 }
 
-/// Prepares the scene.
-pub fn prepare(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
-    })
-}
+prepare_with!(build);
 
 fn build<T: Real>(
     parameters: &Parameters,

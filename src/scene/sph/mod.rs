@@ -1,5 +1,23 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
+/// Defines `prepare`, which makes a scene ready by a function `build::<T>(parameters, precision)`, in
+/// the scalar type asked for.
+macro_rules! prepare_with {
+    ($build:ident) => {
+        /// Prepares the scene.
+        pub fn prepare(
+            parameters: &$crate::scene::Parameters,
+            precision: $crate::scene::Precision,
+        ) -> Result<Box<dyn $crate::scene::Prepared>, $crate::scene::SceneError> {
+            use $crate::scene::Precision;
+            Ok(match precision {
+                Precision::F32 => Box::new($build::<f32>(parameters, precision)?),
+                Precision::F64 => Box::new($build::<f64>(parameters, precision)?),
+            })
+        }
+    };
+}
+
 pub mod cavity;
 pub mod channel;
 pub mod cylinder;

@@ -11,23 +11,14 @@ use crate::figure::Axis;
 use crate::scene::noh::{self, HEAT_RATIO, Noh, PRESSURE, TIME};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     [&noh::PARAMETERS[..], &gas::PARAMETERS].concat()
 }
 
-/// Prepares the scene.
-pub fn prepare(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
-    })
-}
+prepare_with!(build);
 
 /// How far gas extends at the start, m. Its edge is at 0.5 m at the end, far from the shock at
 /// 0.2 m: what is wrong at the edge does not get there, since gas comes in faster than sound.

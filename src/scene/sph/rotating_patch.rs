@@ -16,7 +16,7 @@ use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::rotating_patch::{
     self, ANGULAR_VELOCITY, CENTRE_PRESSURE, DENSITY, RotatingPatch, SIDE,
 };
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 const DEFAULTS: Defaults = Defaults {
     mach: 0.1,
@@ -32,16 +32,7 @@ pub fn parameters() -> Vec<Parameter> {
     [&rotating_patch::PARAMETERS[..], &free_surface::parameters(&DEFAULTS)].concat()
 }
 
-/// Prepares the scene.
-pub fn prepare(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
-    })
-}
+prepare_with!(build);
 
 fn build<T: Real>(
     parameters: &Parameters,

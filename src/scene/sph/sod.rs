@@ -11,23 +11,14 @@ use crate::figure::Axis;
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
 use crate::scene::sod::{self, DIAPHRAGM, Sod, TUBE};
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     [&sod::PARAMETERS[..], &gas::PARAMETERS].concat()
 }
 
-/// Prepares the scene.
-pub fn prepare(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(parameters, precision)?),
-    })
-}
+prepare_with!(build);
 
 /// Rows of the dense gas across a tube in 2-D: three times those of the thin gas.
 const ROWS: usize = 24;
