@@ -9,10 +9,11 @@ use finegrain_framework::{
     ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, Stage, State,
 };
 
+use crate::candidates::{Candidates, Gathered};
 use crate::evaluation::{Alone, Piece};
 use crate::fields::Fields;
 use crate::kernel::adaptive::AdaptiveKernel;
-use crate::neighbourhood::{Candidates, Gathered, Neighbours, Particle};
+use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::Quantity;
 
 /// Most iterations for one particle; a few are usual.

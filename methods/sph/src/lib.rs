@@ -11,7 +11,7 @@
 //! | `term/` | one sum over neighbours each, reading like its equation |
 //! | `evaluation.rs` | the order of the terms and updates, from what they read and write |
 //! | `sweep.rs` | a rate stage: gathers the neighbours of a particle once and runs the terms over them |
-//! | `neighbourhood.rs` | candidates of a cell, neighbours of a particle, in lanes |
+//! | `candidates.rs`, `neighbourhood.rs` | candidates of a cell, in records; neighbours of a particle, in lanes |
 //! | [`kernel`] | smoothing functions |
 //! | [`body`], `wall.rs`, `wall_state.rs` | bodies, and how the fluid feels them |
 //! | [`packing`] | lattices that are exactly periodic |
@@ -71,6 +71,7 @@ pub mod start;
 pub mod state_equation;
 
 mod adaptive_density;
+mod candidates;
 mod correction;
 mod evaluation;
 mod gas_pacing;

@@ -8,9 +8,10 @@ use finegrain_framework::{
 };
 
 use crate::acceleration::AccelerationField;
+use crate::candidates::{Candidates, Gathered};
 use crate::fields::Fields;
 use crate::kernel::adaptive::Kernels;
-use crate::neighbourhood::{Candidates, Gathered, Neighbours, Particle};
+use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 use crate::term::{AnyTerm, Term, Work};
 use crate::wall::{Extrapolation, Friction};

@@ -98,6 +98,13 @@ pub(crate) enum VelocityInBodies {
 }
 
 impl VelocityInBodies {
+    /// What friction reads of a particle.
+    pub fn reads(in_bodies: Option<Self>, dims: usize) -> Vec<Quantity> {
+        let velocity = Quantity::vector(Quantity::Velocity, dims);
+        let seen = in_bodies.into_iter().flat_map(|v| (0..dims).map(move |a| v.component(a)));
+        velocity.chain(seen).chain([Quantity::Volume, Quantity::WallDepth]).collect()
+    }
+
     /// Its component `a`.
     #[inline(always)]
     pub fn component(self, a: usize) -> Quantity {

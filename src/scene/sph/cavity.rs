@@ -23,7 +23,12 @@ const LAYERS: f64 = 8.0;
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     super::with_defaults(
-        &[&cavity::PARAMETERS, &super::PARAMETERS, &super::WALL_PARAMETERS],
+        &[
+            &cavity::PARAMETERS,
+            &super::LIQUID_PARAMETERS,
+            &super::PARAMETERS,
+            &super::WALL_PARAMETERS,
+        ],
         &[("transport", 4.0), ("smoothing_ratio", 1.3)],
         &[
             ("kernel", "quintic-spline"),

@@ -24,7 +24,12 @@ const LENGTH: f64 = 20.0;
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     super::with_defaults(
-        &[&channel::PARAMETERS, &super::PARAMETERS, &super::WALL_PARAMETERS],
+        &[
+            &channel::PARAMETERS,
+            &super::LIQUID_PARAMETERS,
+            &super::PARAMETERS,
+            &super::WALL_PARAMETERS,
+        ],
         &[("beta_max", 100.0)],
         &[
             ("kernel", "quintic-spline"),

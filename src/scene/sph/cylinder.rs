@@ -26,7 +26,13 @@ pub fn parameters() -> Vec<Parameter> {
         "square (3-D: cubic) lattice, or close packing",
     )];
     super::with_defaults(
-        &[&cylinder::PARAMETERS, &super::PARAMETERS, &super::WALL_PARAMETERS, &own],
+        &[
+            &cylinder::PARAMETERS,
+            &super::LIQUID_PARAMETERS,
+            &super::PARAMETERS,
+            &super::WALL_PARAMETERS,
+            &own,
+        ],
         &[("beta_max", 6.0)],
         &[
             ("kernel", "quintic-spline"),

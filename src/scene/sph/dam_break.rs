@@ -10,8 +10,7 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::{Real, Simulation};
 use finegrain_sph::{Fields, Fluid, Sph};
 
-use super::free_surface::{self, Defaults};
-use super::{Flow, SphScene, tank};
+use super::{Flow, SphScene, free_surface, tank};
 use crate::scene::dam_break::{self, DamBreak, HEIGHT, WIDTH};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::tank::{DENSITY, GRAVITY};
@@ -21,19 +20,13 @@ use crate::scene::{Precision, Report, SceneError};
 /// only the first row of the table is before.
 const GATE_GONE: f64 = 0.5;
 
-const DEFAULTS: Defaults = Defaults {
-    mach: 0.1,
-    smoothing_ratio: 1.5,
-    artificial_viscosity: 0.1,
-    density_diffusion: &["antuono", "fourtakas", "molteni-colagrossi", "none"],
-    tension: &["none", "control", "artificial-pressure"],
-    shifting: &["off", "on"],
-};
-
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
-    let of_method = free_surface::parameters(&DEFAULTS);
-    [&dam_break::PARAMETERS[..], &of_method, &tank::parameters(0.5)].concat()
+    free_surface::parameters(
+        &[&dam_break::PARAMETERS, &tank::PARAMETERS],
+        &[("smoothing_ratio", 1.5), ("artificial_viscosity", 0.1), ("repulsion", 0.5)],
+        &[],
+    )
 }
 
 prepare_with!(build);
@@ -77,8 +70,7 @@ impl<T: Real> Flow<T> for DamFlow {
 
     /// `front`, the largest relative difference from the experiment after the shift `gate_shift`
     /// in time (in units of `sqrt(a / 2 g)`) and once the gate is gone; `front_with_gate` from
-    /// its beginning, too; `through_walls`, the most particles beyond a wall at
-    /// any time; `energy_growth` and `energy_change` over the potential energy at the beginning.
+    /// its beginning, too; `through_walls`; `energy_growth` and `energy_change` over the potential energy at the beginning.
     fn judge(
         &self,
         report: &mut Report,
@@ -101,14 +93,9 @@ impl<T: Real> Flow<T> for DamFlow {
                 report.results.insert("front_with_gate", found.error);
             }
         }
-        if let Some(beyond) = water.column("through_walls") {
-            report.result("through_walls", beyond.fold(0.0, f64::max), None);
-        }
+        tank::judge_walls(report, &summary.histories);
         let scale = 0.5 * DENSITY * GRAVITY * HEIGHT * HEIGHT * WIDTH;
-        if let Some([growth, change]) = free_surface::energy_changes(&summary.histories, scale) {
-            report.result("energy_growth", growth, None);
-            report.result("energy_change", change, None);
-        }
+        free_surface::judge_energy(report, &summary.histories, scale);
     }
 
     fn title(&self) -> String {

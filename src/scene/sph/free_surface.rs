@@ -3,83 +3,43 @@
 
 use finegrain_framework::run::{Every, History, Run};
 use finegrain_framework::space::Cells;
-use finegrain_framework::{Integrator, Real, Simulation, Whole};
+use finegrain_framework::{Real, Simulation, Whole};
 use finegrain_sph::{
-    ArtificialViscosity, DensityDiffusion, DiffusionForm, Fields, Fluid, Scheme, SmoothingFunction,
-    Stabilisation, StateEquation, measure,
+    ArtificialViscosity, DensityDiffusion, DiffusionForm, Fields, Fluid, Scheme, Stabilisation,
+    StateEquation, measure,
 };
 
+use crate::scene::Report;
 use crate::scene::parameter::{Parameter, Parameters};
 
-/// What a scene takes if nobody says otherwise.
-pub(super) struct Defaults {
-    /// Largest speed over sound speed.
-    pub mach: f64,
-    /// Smoothing length over spacing.
-    pub smoothing_ratio: f64,
-    /// `alpha` of the artificial viscosity.
-    pub artificial_viscosity: f64,
-    /// The forms of density diffusion, the default first.
-    pub density_diffusion: &'static [&'static str],
-    /// What is done about tension, the default first.
-    pub tension: &'static [&'static str],
-    /// Whether particles are shifted, the default first.
-    pub shifting: &'static [&'static str],
-}
+/// Parameters of the discretisation besides those of all liquids.
+const PARAMETERS: [Parameter; 6] = [
+    Parameter::choice("state_equation", &["tait", "linear"], "pressure from density"),
+    Parameter::number("artificial_viscosity", 0.0, [0.0, 10.0], "", "alpha of Monaghan (1992)"),
+    Parameter::choice(
+        "density_diffusion",
+        &["antuono", "fourtakas", "molteni-colagrossi", "none"],
+        "Antuono et al. (2010), Fourtakas et al. (2019) or Molteni & Colagrossi (2009)",
+    ),
+    Parameter::number("delta", 0.1, [0.0, 1.0], "", "strength of the density diffusion"),
+    Parameter::choice(
+        "tension",
+        &["none", "control", "artificial-pressure"],
+        "against clumping under tension: Sun et al. (2018) or Monaghan (2000)",
+    ),
+    Parameter::choice("shifting", &["off", "on"], "shifting of particles, Sun et al. (2017)"),
+];
 
-/// Parameters of the discretisation.
-pub(super) fn parameters(defaults: &Defaults) -> Vec<Parameter> {
-    vec![
-        Parameter::choice(
-            "kernel",
-            &["wendland-c2", "gaussian", "cubic-spline", "quartic-spline", "quintic-spline"],
-            "smoothing kernel",
-        ),
-        Parameter::number(
-            "smoothing_ratio",
-            defaults.smoothing_ratio,
-            [0.8, 3.0],
-            "",
-            "smoothing length over spacing",
-        ),
-        Parameter::choice(
-            "integrator",
-            &["leapfrog", "symplectic-euler", "rk2", "ssp-rk3", "rk4", "euler"],
-            "how time is stepped",
-        ),
-        Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
-        Parameter::number(
-            "mach",
-            defaults.mach,
-            [1e-4, 0.5],
-            "",
-            "largest speed over sound speed, about",
-        ),
-        Parameter::choice("state_equation", &["tait", "linear"], "pressure from density"),
-        Parameter::number(
-            "artificial_viscosity",
-            defaults.artificial_viscosity,
-            [0.0, 10.0],
-            "",
-            "alpha of Monaghan (1992)",
-        ),
-        Parameter::choice(
-            "density_diffusion",
-            defaults.density_diffusion,
-            "Antuono et al. (2010), Molteni & Colagrossi (2009) or Fourtakas et al. (2019)",
-        ),
-        Parameter::number("delta", 0.1, [0.0, 1.0], "", "strength of the density diffusion"),
-        Parameter::choice(
-            "tension",
-            defaults.tension,
-            "against clumping under tension: Sun et al. (2018) or Monaghan (2000)",
-        ),
-        Parameter::choice(
-            "shifting",
-            defaults.shifting,
-            "shifting of particles, Sun et al. (2017)",
-        ),
-    ]
+/// All parameters of a scene with a free surface, with its own defaults put over those that are
+/// shared; the kernel is Wendland's C2 (1995).
+pub(super) fn parameters(
+    own: &[&[Parameter]],
+    numbers: &[(&str, f64)],
+    choices: &[(&str, &'static str)],
+) -> Vec<Parameter> {
+    let shared: [&[Parameter]; 2] = [&super::LIQUID_PARAMETERS, &PARAMETERS];
+    let choices = [&[("kernel", "wendland-c2")], choices].concat();
+    super::with_defaults(&[own, &shared].concat(), numbers, &choices)
 }
 
 /// The scheme that the parameters name, for a flow with this largest speed, m/s.
@@ -93,16 +53,6 @@ pub(super) fn scheme(parameters: &Parameters, speed: f64) -> Scheme {
     };
     let tension = parameters.choice("tension");
     Scheme {
-        kernel: match parameters.choice("kernel") {
-            "gaussian" => SmoothingFunction::Gaussian,
-            "cubic-spline" => SmoothingFunction::CubicSpline,
-            "quartic-spline" => SmoothingFunction::QuarticSpline,
-            "quintic-spline" => SmoothingFunction::QuinticSpline,
-            _ => SmoothingFunction::WendlandC2,
-        },
-        smoothing_ratio: parameters.number("smoothing_ratio"),
-        integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
-        courant_number: parameters.number("courant"),
         stabilisation: Stabilisation {
             artificial_viscosity: (alpha > 0.0).then_some(ArtificialViscosity { alpha, beta: 0.0 }),
             density_diffusion: form
@@ -112,7 +62,7 @@ pub(super) fn scheme(parameters: &Parameters, speed: f64) -> Scheme {
             shifting: (parameters.choice("shifting") == "on").then_some(speed),
             repulsion: None,
         },
-        ..Scheme::default()
+        ..super::liquid_scheme(parameters)
     }
 }
 
@@ -166,6 +116,14 @@ pub(super) fn energy_changes(histories: &[History], scale: f64) -> Option<[f64; 
         growth = growth.max(e - least);
     }
     Some([growth / scale, (energy.last()? - energy.first()?) / scale])
+}
+
+/// Adds `energy_growth` and `energy_change`, over the energy `scale`.
+pub(super) fn judge_energy(report: &mut Report, histories: &[History], scale: f64) {
+    if let Some([growth, change]) = energy_changes(histories, scale) {
+        report.result("energy_growth", growth, None);
+        report.result("energy_change", change, None);
+    }
 }
 
 /// Mean pressure of the fluid within `radius` of a point, Pa; NaN if there is none.

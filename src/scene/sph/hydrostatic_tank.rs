@@ -9,25 +9,18 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::{Real, Simulation};
 use finegrain_sph::{Fields, Fluid, Sph};
 
-use super::free_surface::{self, Defaults};
-use super::{Flow, SphScene, tank};
+use super::{Flow, SphScene, free_surface, tank};
 use crate::scene::hydrostatic_tank::{self, DEPTH, HydrostaticTank};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::{Precision, Report, SceneError};
 
-const DEFAULTS: Defaults = Defaults {
-    mach: 0.1,
-    smoothing_ratio: 2.0,
-    artificial_viscosity: 0.1,
-    density_diffusion: &["antuono", "fourtakas", "molteni-colagrossi", "none"],
-    tension: &["none", "control", "artificial-pressure"],
-    shifting: &["off", "on"],
-};
-
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
-    let of_method = free_surface::parameters(&DEFAULTS);
-    [&hydrostatic_tank::PARAMETERS[..], &of_method, &tank::parameters(0.0)].concat()
+    free_surface::parameters(
+        &[&hydrostatic_tank::PARAMETERS, &tank::PARAMETERS],
+        &[("smoothing_ratio", 2.0), ("artificial_viscosity", 0.1)],
+        &[],
+    )
 }
 
 prepare_with!(build);
@@ -67,8 +60,7 @@ impl<T: Real> Flow<T> for TankFlow {
 
     /// `largest_speed` over `sqrt(g H)`: the largest in the last tenth of the time; `speed_trend`,
     /// that over the largest in the first half of the run, below 1 where it falls;
-    /// `pressure_l2`, the error over that at the bottom; `through_walls`, the most particles beyond
-    /// a wall at any time.
+    /// `pressure_l2`, the error over that at the bottom; `through_walls`.
     fn judge(
         &self,
         report: &mut Report,
@@ -87,9 +79,7 @@ impl<T: Real> Flow<T> for TankFlow {
             report.result("largest_speed", last / self.scene.speed(), None);
             report.result("speed_trend", last / early, None);
         }
-        if let Some(beyond) = column("through_walls") {
-            report.result("through_walls", most(&beyond), None);
-        }
+        tank::judge_walls(report, &summary.histories);
         let columns = simulation.columns();
         let (mut squared, mut count) = (0.0, 0.0);
         for i in 0..columns.points() {

@@ -50,8 +50,8 @@ use super::report::Picture;
 use super::{Orders, Prepared, Report, SceneError};
 use crate::figure::{Axis, Field};
 
-/// Parameters of the discretisation that all SPH scenes share.
-const PARAMETERS: [Parameter; 12] = [
+/// Parameters of the discretisation that scenes of all liquids share.
+const LIQUID_PARAMETERS: [Parameter; 5] = [
     Parameter::choice(
         "kernel",
         &[
@@ -66,6 +66,28 @@ const PARAMETERS: [Parameter; 12] = [
         "smoothing kernel",
     ),
     Parameter::number("smoothing_ratio", 1.0, [0.8, 3.0], "", "smoothing length over spacing"),
+    Parameter::choice(
+        "integrator",
+        &["leapfrog", "symplectic-euler", "rk2", "ssp-rk3", "rk4", "euler"],
+        "how time is stepped",
+    ),
+    Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
+    Parameter::number("mach", 0.1, [1e-4, 0.5], "", "largest speed over sound speed, about"),
+];
+
+/// What the parameters of all liquids say about the discretisation.
+fn liquid_scheme(parameters: &Parameters) -> Scheme {
+    Scheme {
+        kernel: kernel(parameters),
+        smoothing_ratio: parameters.number("smoothing_ratio"),
+        integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
+        courant_number: parameters.number("courant"),
+        ..Scheme::default()
+    }
+}
+
+/// Further parameters of the discretisation that scenes without a free surface share.
+const PARAMETERS: [Parameter; 7] = [
     Parameter::choice(
         "viscous_form",
         &["morris", "strain-rate", "adami"],
@@ -107,22 +129,11 @@ const PARAMETERS: [Parameter; 12] = [
         "",
         "added to the equation of state, in units of density times sound speed squared",
     ),
-    Parameter::choice(
-        "integrator",
-        &["leapfrog", "symplectic-euler", "rk2", "ssp-rk3", "rk4", "euler"],
-        "how time is stepped",
-    ),
-    Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
-    Parameter::number("mach", 0.1, [1e-4, 0.5], "", "largest speed over sound speed, about"),
 ];
 
 /// What the parameters say about the discretisation.
 fn scheme(parameters: &Parameters) -> Scheme {
     Scheme {
-        kernel: kernel(parameters),
-        smoothing_ratio: parameters.number("smoothing_ratio"),
-        integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
-        courant_number: parameters.number("courant"),
         density: match parameters.choice("density") {
             "summation" => Density::Summation,
             _ => Density::Continuity,
@@ -134,7 +145,7 @@ fn scheme(parameters: &Parameters) -> Scheme {
             _ => PressureForm::Symmetric,
         },
         transport: parameters.number("transport"),
-        ..Scheme::default()
+        ..liquid_scheme(parameters)
     }
 }
 

@@ -8,26 +8,19 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::{Real, Simulation};
 use finegrain_sph::{Fields, Fluid, Sph};
 
-use super::free_surface::{self, Defaults};
-use super::{Flow, SphScene, tank};
+use super::{Flow, SphScene, free_surface, tank};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::standing_wave::{self, DEPTH, StandingWave};
 use crate::scene::tank::GRAVITY;
 use crate::scene::{Precision, Report, SceneError};
 
-const DEFAULTS: Defaults = Defaults {
-    mach: 0.1,
-    smoothing_ratio: 2.0,
-    artificial_viscosity: 0.01,
-    density_diffusion: &["antuono", "fourtakas", "molteni-colagrossi", "none"],
-    tension: &["none", "control", "artificial-pressure"],
-    shifting: &["off", "on"],
-};
-
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
-    let of_method = free_surface::parameters(&DEFAULTS);
-    [&standing_wave::PARAMETERS[..], &of_method, &tank::parameters(0.0)].concat()
+    free_surface::parameters(
+        &[&standing_wave::PARAMETERS, &tank::PARAMETERS],
+        &[("smoothing_ratio", 2.0), ("artificial_viscosity", 0.01)],
+        &[],
+    )
 }
 
 prepare_with!(build);
@@ -92,8 +85,7 @@ impl<T: Real> Flow<T> for WaveFlow {
 
     /// `period`, from the moments when the water turns;
     /// `energy_growth` over all energy, that in gravity counted from the bottom;
-    /// `wave_energy_growth` and `wave_energy_change` over that of the wave alone; `through_walls`, the most
-    /// particles beyond a wall at any time.
+    /// `wave_energy_growth` and `wave_energy_change` over that of the wave alone; `through_walls`.
     fn judge(
         &self,
         report: &mut Report,
@@ -112,9 +104,7 @@ impl<T: Real> Flow<T> for WaveFlow {
                 report.result("energy_growth", growth * self.scene.energy() / all, None);
             }
         }
-        if let Some(beyond) = summary.histories[1].column("through_walls") {
-            report.result("through_walls", beyond.fold(0.0, f64::max), None);
-        }
+        tank::judge_walls(report, &summary.histories);
         let wave = &summary.histories[2];
         let Some(phase) = wave.column("phase").map(Iterator::collect::<Vec<f64>>) else {
             return;

@@ -1,36 +1,34 @@
 //! The tank in SPH: a square lattice of water, and as many layers of it in the walls as particles
 //! see.
 
-use finegrain_framework::Whole;
-use finegrain_framework::run::{Every, Run};
+use finegrain_framework::run::{Every, History, Run};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
-use finegrain_framework::{Real, State};
+use finegrain_framework::{Near, Real, State, Whole};
 use finegrain_sph::{Fields, Fluid, Physics, Scheme, Slip, Stabilisation, Start, WallPressure};
 
 use super::free_surface;
+use crate::scene::Report;
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::tank::{DENSITY, GRAVITY, Tank};
 
 /// Parameters that scenes in a tank have besides.
-pub(super) fn parameters(repulsion: f64) -> [Parameter; 2] {
-    [
-        Parameter::choice(
-            "walls",
-            &["extrapolated", "evolved"],
-            "pressure in the walls: from the fluid (Adami et al. 2012), or virtual particles that repel by \
-     being compressed (Monaghan 1994)",
-        ),
-        Parameter::number(
-            "repulsion",
-            repulsion,
-            [0.0, 10.0],
-            "",
-            "repulsion of what is nearer than a spacing to particles of walls (Monaghan 1994), in units \
-         of the square of the largest speed",
-        ),
-    ]
-}
+pub(super) const PARAMETERS: [Parameter; 2] = [
+    Parameter::choice(
+        "walls",
+        &["extrapolated", "evolved"],
+        "pressure in the walls: from the fluid (Adami et al. 2012), or virtual particles that \
+         repel by being compressed (Monaghan 1994)",
+    ),
+    Parameter::number(
+        "repulsion",
+        0.0,
+        [0.0, 10.0],
+        "",
+        "repulsion of what is nearer than a spacing to particles of walls (Monaghan 1994), in \
+         units of the square of the largest speed",
+    ),
+];
 
 /// Water with a numerical sound speed, m/s.
 pub(super) fn water(parameters: &Parameters, sound_speed: f64) -> Fluid {
@@ -129,16 +127,14 @@ pub(super) fn watch<T: Real>(
     tank: &Tank,
 ) -> [f64; 3] {
     let width = T::of(tank.width);
-    let value = |near: &finegrain_framework::Near<'_, Cells<T>>, handle: State<T>, i: usize| {
-        near.state(handle).own().whole()[i]
-    };
-    let is_water = |near: &finegrain_framework::Near<'_, Cells<T>>, i: usize| {
+    let value =
+        |near: &Near<'_, Cells<T>>, handle: State<T>, i: usize| near.state(handle).own().whole()[i];
+    let is_water = |near: &Near<'_, Cells<T>>, i: usize| {
         fields.wall_depth.is_none_or(|depth| value(near, depth, i) == T::zero())
     };
     let [beyond] = whole.sum(|near| {
         let count = (0..near.spans()[0].len()).filter(|&i| {
-            let x = fields.position.iter().map(|&p| value(near, p, i));
-            let [x, y] = [x.clone().next(), x.clone().nth(1)].map(Option::unwrap_or_default);
+            let [x, y] = [0, 1].map(|a| value(near, fields.position[a], i));
             is_water(near, i) && (x < T::zero() || x > width || y < T::zero())
         });
         [count.count() as f64]
@@ -171,4 +167,12 @@ pub(super) fn monitor<T: Real>(
     run.monitor("water", every, ["through_walls", "front", "largest_speed"], move |whole| {
         watch(whole, &fields, &tank)
     })
+}
+
+/// Adds `through_walls`, the most particles beyond a wall at any time.
+pub(super) fn judge_walls(report: &mut Report, histories: &[History]) {
+    let water = histories.iter().find(|history| history.name() == "water");
+    if let Some(beyond) = water.and_then(|water| water.column("through_walls")) {
+        report.result("through_walls", beyond.fold(0.0, f64::max), None);
+    }
 }

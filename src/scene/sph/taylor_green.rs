@@ -27,7 +27,7 @@ pub fn parameters() -> Vec<Parameter> {
         "largest random displacement from the lattice at the start, in spacings",
     )];
     super::with_defaults(
-        &[&taylor_green::PARAMETERS, &super::PARAMETERS, &own],
+        &[&taylor_green::PARAMETERS, &super::LIQUID_PARAMETERS, &super::PARAMETERS, &own],
         &[("transport", 10.0), ("smoothing_ratio", 1.6)],
         &[
             ("kernel", "quintic-spline"),

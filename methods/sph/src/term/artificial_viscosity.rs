@@ -43,13 +43,7 @@ impl<T: Real> Term<T> for ArtificialViscosity<T> {
     ) {
         let factor = near.gradient_factor();
         let [weight, approach] = work.lanes(factor.len());
-        approach.fill(T::zero());
-        for a in 0..D {
-            let (own, v) = (i[Quantity::Velocity(a)], near.values(Quantity::Velocity(a)));
-            for ((approach, &v), &dx) in approach.iter_mut().zip(v).zip(near.difference(a)) {
-                *approach = (own - v).mul_add(dx, *approach);
-            }
-        }
+        near.velocity_jump(i, approach);
         let (own, density) = (i[Quantity::Density], near.values(Quantity::Density));
         let Self { linear, quadratic, smoothing_length: h, .. } = *self;
         let eta_squared = T::of(0.01) * h * h;

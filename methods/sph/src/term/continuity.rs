@@ -31,13 +31,7 @@ impl<T: Real> Term<T> for Continuity<T> {
     ) {
         let factor = near.gradient_factor();
         let [jump, _] = work.lanes(factor.len());
-        jump.fill(T::zero());
-        for a in 0..D {
-            let (v, dx) = (near.values(Quantity::Velocity(a)), near.difference(a));
-            for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
-                *jump = (i[Quantity::Velocity(a)] - v).mul_add(dx, *jump);
-            }
-        }
+        near.velocity_jump(i, jump);
         let [sum] = T::dots(factor, [&*jump]);
         sums[Quantity::DensityRate] += self.mass * sum;
     }

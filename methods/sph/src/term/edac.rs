@@ -46,13 +46,7 @@ impl<T: Real> Term<T> for PressureEvolution<T> {
         let [weight, jump] = work.lanes(factor.len());
         let (own, volume) = (i[Quantity::Volume], near.values(Quantity::Volume));
         let (own_pressure, pressure) = (i[Quantity::Pressure], near.values(Quantity::Pressure));
-        jump.fill(T::zero());
-        for a in 0..D {
-            let (v, dx) = (near.values(Quantity::Velocity(a)), near.difference(a));
-            for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
-                *jump = (i[Quantity::Velocity(a)] - v).mul_add(dx, *jump);
-            }
-        }
+        near.velocity_jump(i, jump);
         for ((weight, &factor), &volume) in weight.iter_mut().zip(factor).zip(volume) {
             *weight = factor * volume;
         }

@@ -23,10 +23,7 @@ pub(crate) struct StrainRate<T> {
 
 impl<T: Real> Term<T> for StrainRate<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
-        let velocity = Quantity::vector(Quantity::Velocity, dims);
-        let in_bodies =
-            self.in_bodies.into_iter().flat_map(|v| (0..dims).map(move |a| v.component(a)));
-        velocity.chain(in_bodies).chain([Quantity::Volume, Quantity::WallDepth]).collect()
+        VelocityInBodies::reads(self.in_bodies, dims)
     }
 
     fn writes(&self, dims: usize) -> Vec<Quantity> {

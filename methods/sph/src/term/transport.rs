@@ -77,11 +77,7 @@ impl<T: Real> Term<T> for DriftStress {
         for ((weight, &factor), &volume) in weight.iter_mut().zip(factor).zip(volume) {
             *weight = half * factor * volume.mul_add(volume, own * own);
         }
-        if let Some(depth) = near.wall_depth() {
-            for (weight, &depth) in weight.iter_mut().zip(depth) {
-                *weight = if depth > T::zero() { T::zero() } else { *weight };
-            }
-        }
+        near.leave_out_bodies(weight);
         let direction = near.sum_differences(weight);
         let mut own_along = T::zero();
         for a in 0..D {

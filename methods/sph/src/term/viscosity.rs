@@ -24,10 +24,7 @@ pub(crate) struct MorrisViscosity<T> {
 
 impl<T: Real> Term<T> for MorrisViscosity<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
-        let velocity = Quantity::vector(Quantity::Velocity, dims);
-        let in_bodies =
-            self.in_bodies.into_iter().flat_map(|v| (0..dims).map(move |a| v.component(a)));
-        velocity.chain(in_bodies).chain([Quantity::Volume, Quantity::WallDepth]).collect()
+        VelocityInBodies::reads(self.in_bodies, dims)
     }
 
     fn writes(&self, dims: usize) -> Vec<Quantity> {
@@ -59,15 +56,7 @@ impl<T: Real> Term<T> for MorrisViscosity<T> {
         let density = self.mass / i[Quantity::Volume];
         let scale = T::of(2.0) * self.dynamic_viscosity / density;
         for a in 0..D {
-            let (own, v) = (i[Quantity::Velocity(a)], near.values(Quantity::Velocity(a)));
-            for (jump, &v) in jump.iter_mut().zip(v) {
-                *jump = own - v;
-            }
-            if let Some(in_bodies) = self.in_bodies {
-                for (jump, &v) in jump.iter_mut().zip(near.values(in_bodies.component(a))) {
-                    *jump -= v;
-                }
-            }
+            near.friction_jump(i, a, self.in_bodies, jump);
             let [sum] = T::dots(weight, [&*jump]);
             sums[Quantity::Acceleration(a)] += scale * sum;
         }
