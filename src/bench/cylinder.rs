@@ -7,7 +7,8 @@
 //! of the close packing, an even number where periodicity demands it, so that the packing is
 //! periodic.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::thread;
 
 use finegrain_framework::run::{Dump, Every, Run, RunFailed, Until};
 use finegrain_framework::shape::{Axis, Shape};
@@ -16,6 +17,7 @@ use finegrain_framework::{Real, Schedule, Settings, Simulation};
 use finegrain_sph::{Fluid, Packing, Physics, Scheme, Sph, StateEquation, Viscosity, measure};
 
 use super::memory;
+use super::row::Row;
 use crate::scene::{Precision, SceneError, sph::cylinder::start};
 
 /// Particle spacing of the paper, m.
@@ -47,78 +49,6 @@ pub struct Plan {
     pub viscosity: Viscosity,
     /// Folder for results.
     pub out: PathBuf,
-}
-
-/// What was measured for one width and number of workers.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// Width of the box as asked for, m.
-    pub width: f64,
-    /// Number of particles.
-    pub particles: usize,
-    /// Number of workers.
-    pub workers: usize,
-    /// Neighbours within range that a particle has on average.
-    pub neighbours: f64,
-    /// Sweeps over all pairs that a step makes.
-    pub sweeps: usize,
-    /// Seconds a step of every sample, results dumps included.
-    pub seconds_per_step: Vec<f64>,
-    /// Seconds a step with one worker, sample by sample; empty if that was not measured.
-    pub alone: Vec<f64>,
-    /// Largest resident memory of the process, bytes.
-    pub peak_memory: Option<u64>,
-}
-
-/// Middle value, the lower one of two.
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
-}
-
-impl Row {
-    /// Median seconds a step.
-    pub fn seconds(&self) -> f64 {
-        median(&self.seconds_per_step)
-    }
-
-    /// Seconds a step of the best sample.
-    pub fn best(&self) -> f64 {
-        self.seconds_per_step.iter().copied().fold(f64::INFINITY, f64::min)
-    }
-
-    /// Speed-up over one worker (eq. 9) of every sample, each against its own turn's.
-    pub fn speed_ups(&self) -> Vec<f64> {
-        self.alone.iter().zip(&self.seconds_per_step).map(|(one, many)| one / many).collect()
-    }
-
-    /// Speed-up over one worker: median over the samples.
-    pub fn speed_up(&self) -> Option<f64> {
-        let ratios = self.speed_ups();
-        (!ratios.is_empty()).then(|| median(&ratios))
-    }
-
-    /// Efficiency (eq. 10).
-    pub fn efficiency(&self) -> Option<f64> {
-        Some(self.speed_up()? / self.workers as f64)
-    }
-
-    /// Pairs of neighbours a second and worker in whole steps, each pair counted once a step from
-    /// either side, however many sweeps visit it.
-    pub fn pairs_per_second(&self) -> f64 {
-        self.particles as f64 * self.neighbours / (self.seconds() * self.workers as f64)
-    }
-
-    /// Pair interactions a second and worker in whole steps: every sweep's visits count.
-    pub fn interactions_per_second(&self) -> f64 {
-        self.pairs_per_second() * self.sweeps as f64
-    }
-
-    /// Bytes a particle of the whole process.
-    pub fn bytes_per_particle(&self) -> Option<f64> {
-        Some(self.peak_memory? as f64 / self.particles as f64)
-    }
 }
 
 /// Builds the paper's model for a width.
@@ -172,9 +102,10 @@ fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Ro
         for _ in 0..plan.repeats {
             let seconds = sample::<T>(plan, width)?;
             for (row, &own) in group.iter_mut().zip(&seconds) {
-                row.seconds_per_step.push(own);
+                row.seconds_per_step.push(own.together);
                 if plan.workers[0] == 1 && row.workers > 1 {
-                    row.alone.push(seconds[0]);
+                    row.alone.push(seconds[0].together);
+                    row.apart.push(own.apart);
                 }
                 say(row);
             }
@@ -206,28 +137,76 @@ fn empty_rows<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> 
             },
             seconds_per_step: Vec::new(),
             alone: Vec::new(),
+            apart: Vec::new(),
             peak_memory,
         });
     }
     Ok(rows)
 }
 
-/// Seconds a step of one sample for each number of workers, results dumps included, initial
-/// preparations and the first steps not.
-fn sample<T: Real>(plan: &Plan, width: f64) -> Result<Vec<f64>, SceneError> {
-    let start = |&workers| start_run::<T>(plan, width, workers);
-    let mut runs = plan.workers.iter().map(start).collect::<Result<Vec<_>, _>>()?;
-    let mut seconds = vec![0.0; runs.len()];
-    for run in &mut runs {
-        run.run()?;
+/// Seconds a step of one sample, results dumps included, initial preparations and the first steps
+/// not.
+#[derive(Clone, Copy, Default)]
+struct Sample {
+    /// Of one run with all workers.
+    together: f64,
+    /// Of separate runs with one worker each; 0 with one worker.
+    apart: f64,
+}
+
+/// The runs of one number of workers.
+struct Runs<T: Real> {
+    together: Run<Cells<T>>,
+    apart: Vec<Run<Cells<T>>>,
+}
+
+impl<T: Real> Runs<T> {
+    fn until(self, until: Until) -> Self {
+        let apart = self.apart.into_iter().map(|run| run.until(until)).collect();
+        Self { together: self.together.until(until), apart }
     }
+}
+
+/// One sample for each number of workers.
+fn sample<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Sample>, SceneError> {
+    let mut runs = Vec::new();
+    for &workers in &plan.workers {
+        let mut own = Runs { together: start_run::<T>(plan, width, workers)?, apart: Vec::new() };
+        if plan.workers[0] == 1 && workers > 1 {
+            for part in 0..workers {
+                let run = start_run::<T>(plan, width, 1)?;
+                own.apart.push(run.out(plan.out.join(format!("apart/{part}"))));
+            }
+        }
+        own.together.run()?;
+        side_by_side(&mut own.apart)?;
+        runs.push(own);
+    }
+    let mut samples = vec![Sample::default(); runs.len()];
     let mut done = 0;
     while done < plan.steps {
         done = (done + TURN).min(plan.steps);
-        runs = runs.into_iter().map(|run| run.until(steps(WARM_UP + done))).collect();
-        for (run, seconds) in runs.iter_mut().zip(&mut seconds) {
-            *seconds += run.run()?.wall_clock.as_secs_f64() / plan.steps as f64;
+        let until = steps(WARM_UP + done);
+        runs = runs.into_iter().map(|own| own.until(until)).collect();
+        for (own, sample) in runs.iter_mut().zip(&mut samples) {
+            sample.together += own.together.run()?.wall_clock.as_secs_f64() / plan.steps as f64;
+            sample.apart += side_by_side(&mut own.apart)? / plan.steps as f64;
         }
+    }
+    Ok(samples)
+}
+
+/// Runs all at the same time; mean wall-clock seconds that one took.
+fn side_by_side<T: Real>(runs: &mut [Run<Cells<T>>]) -> Result<f64, SceneError> {
+    let count = runs.len().max(1) as f64;
+    let ended: Vec<_> = thread::scope(|scope| {
+        let threads: Vec<_> = runs.iter_mut().map(|run| scope.spawn(|| run.run())).collect();
+        threads.into_iter().map(|thread| thread.join()).collect()
+    });
+    let mut seconds = 0.0;
+    for end in ended {
+        let summary = end.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        seconds += summary.wall_clock.as_secs_f64() / count;
     }
     Ok(seconds)
 }
@@ -258,35 +237,4 @@ fn start_run<T: Real>(
         .vector("velocity", ["velocity_x", "velocity_y", "velocity_z"]);
     // The runs of different numbers of workers are under way at the same time.
     Ok(Run::new(simulation).out(dump_folder(plan, workers)).dump(dump).until(steps(WARM_UP)))
-}
-
-/// Writes the numbers as CSV.
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn write_csv(path: &Path, rows: &[Row]) -> std::io::Result<()> {
-    let mut text = String::from(
-        "width_m,particles,workers,neighbours,sweeps,seconds_per_step_median,\
-         seconds_per_step_best,speed_up,efficiency,pairs_per_s_and_core,\
-         pair_interactions_per_s_and_core,bytes_per_particle\n",
-    );
-    let optional = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.4}"));
-    for row in rows {
-        text += &format!(
-            "{},{},{},{:.2},{},{:.6e},{:.6e},{},{},{:.4e},{:.4e},{}\n",
-            row.width,
-            row.particles,
-            row.workers,
-            row.neighbours,
-            row.sweeps,
-            row.seconds(),
-            row.best(),
-            optional(row.speed_up()),
-            optional(row.efficiency()),
-            row.pairs_per_second(),
-            row.interactions_per_second(),
-            optional(row.bytes_per_particle()),
-        );
-    }
-    std::fs::write(path, text)
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::cylinder::Row;
+use super::row::Row;
 use crate::figure::{Axis, Chart, FigureError, Scale};
 
 /// Draws time per step, speed-up and efficiency against the number of workers into `out`; returns

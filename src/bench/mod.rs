@@ -3,3 +3,4 @@
 pub mod cylinder;
 pub mod figures;
 pub mod memory;
+pub mod row;

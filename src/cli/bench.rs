@@ -4,8 +4,9 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
-use finegrain::bench::cylinder::{self, Plan, Row};
+use finegrain::bench::cylinder::{self, Plan};
 use finegrain::bench::figures;
+use finegrain::bench::row::{self, Row};
 use finegrain::framework::Schedule;
 use finegrain::scene::Precision;
 use finegrain::sph::Viscosity;
@@ -124,7 +125,7 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
         );
     })?;
     table(out, &rows)?;
-    cylinder::write_csv(&plan.out.join("cylinder.csv"), &rows)?;
+    row::write_csv(&plan.out.join("cylinder.csv"), &rows)?;
     let pictures = figures::draw(&plan.out, &rows)?;
     writeln!(out, "\nnumbers:  {}", plan.out.join("cylinder.csv").display())?;
     for picture in pictures {
@@ -140,7 +141,7 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
 fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     writeln!(
         out,
-        "\n{:>7} {:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>13} {:>9}",
+        "\n{:>7} {:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>7} {:>13} {:>9}",
         "width/m",
         "particles",
         "workers",
@@ -148,6 +149,7 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
         "s/step (min)",
         "speed-up",
         "efficiency",
+        "machine",
         "Minteractions",
         "B/particle"
     )?;
@@ -157,7 +159,7 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     for row in rows {
         writeln!(
             out,
-            "{:>7} {:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>13.1} {:>9}",
+            "{:>7} {:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>7} {:>13.1} {:>9}",
             row.width,
             row.particles,
             row.workers,
@@ -165,6 +167,7 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
             row.best(),
             optional(row.speed_up(), 3),
             optional(row.efficiency(), 3),
+            optional(row.machine_efficiency(), 3),
             row.interactions_per_second() / 1e6,
             optional(row.bytes_per_particle(), 0),
         )?;
@@ -172,7 +175,8 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     if let Some(row) = rows.first() {
         writeln!(
             out,
-            "Minteractions: million pair interactions a second and core in whole steps (median), {:.1}\n\
+            "machine: efficiency of as many separate runs of one worker each, all at the same time\n\
+             Minteractions: million pair interactions a second and core in whole steps (median), {:.1}\n\
              neighbours a particle visited in {} sweep(s) a step; every visit counts",
             row.neighbours, row.sweeps
         )?;

@@ -10,10 +10,10 @@ use crate::simulation::{RunError, Simulation};
 use crate::whole::Whole;
 
 /// Appends one row of numbers.
-type Probe<D> = Box<dyn FnMut(&mut Whole<'_, D>, &mut Vec<f64>)>;
+type Probe<D> = Box<dyn FnMut(&mut Whole<'_, D>, &mut Vec<f64>) + Send>;
 
 /// Whether to stop.
-type Question<D> = Box<dyn FnMut(&mut Whole<'_, D>, &[History]) -> bool>;
+type Question<D> = Box<dyn FnMut(&mut Whole<'_, D>, &[History]) -> bool + Send>;
 
 /// What makes a scalar history.
 pub(super) struct Monitor<D: Domain> {

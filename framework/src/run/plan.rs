@@ -100,7 +100,7 @@ impl<D: Domain> Run<D> {
     pub fn stop_when(
         mut self,
         every: Every,
-        criterion: impl FnMut(&mut Whole<'_, D>, &[History]) -> bool + 'static,
+        criterion: impl FnMut(&mut Whole<'_, D>, &[History]) -> bool + Send + 'static,
     ) -> Self {
         let (timetable, question) = (Timetable::new(every), Box::new(criterion));
         self.criteria.push(Criterion { timetable, question });
@@ -154,7 +154,7 @@ impl<D: Domain> Run<D> {
         name: &str,
         every: Every,
         columns: [&str; N],
-        mut probe: impl FnMut(&mut Whole<'_, D>) -> [f64; N] + 'static,
+        mut probe: impl FnMut(&mut Whole<'_, D>) -> [f64; N] + Send + 'static,
     ) -> Self {
         self.histories.push(History::new(name.to_owned(), columns.map(str::to_owned).to_vec()));
         self.monitors.push(Monitor {

@@ -95,7 +95,7 @@ pub(super) fn monitor_energy<T: Real>(
     fields: &Fields<T>,
     fluid: Fluid,
     mass: f64,
-    potential: impl Fn([f64; 3]) -> f64 + Sync + Clone + 'static,
+    potential: impl Fn([f64; 3]) -> f64 + Send + Sync + Clone + 'static,
 ) -> Run<Cells<T>> {
     let fields = fields.clone();
     let columns = ["kinetic_energy", "potential_energy", "elastic_energy", "total_energy"];
