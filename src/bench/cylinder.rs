@@ -96,9 +96,10 @@ const TURN: u64 = 10;
 const WARM_UP: u64 = 5;
 
 fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Row>, SceneError> {
-    let mut rows = Vec::new();
-    for &width in &plan.widths {
-        let mut group = empty_rows::<T>(plan, width)?;
+    // Memory before anything else: allocators keep some of what many runs at once have freed.
+    let groups = plan.widths.iter().map(|&width| empty_rows::<T>(plan, width));
+    let mut groups = groups.collect::<Result<Vec<_>, _>>()?;
+    for (group, &width) in groups.iter_mut().zip(&plan.widths) {
         for _ in 0..plan.repeats {
             let seconds = sample::<T>(plan, width)?;
             for (row, &own) in group.iter_mut().zip(&seconds) {
@@ -110,9 +111,8 @@ fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Ro
                 say(row);
             }
         }
-        rows.extend(group);
     }
-    Ok(rows)
+    Ok(groups.concat())
 }
 
 /// A row for each number of workers without samples yet: what does not need a clock, from a run of

@@ -8,7 +8,11 @@ use std::f64::consts::PI;
 
 use finegrain_framework::shape::{Axis, Shape};
 
+use profiles::{RE_0_03, RE_1, Station};
+
 use super::parameter::{Parameter, Parameters};
+
+mod profiles;
 
 /// Side of the cell, m.
 pub const SIDE: f64 = 0.1;
@@ -82,10 +86,20 @@ impl Cylinder {
         self.body_acceleration * area / (self.viscosity * superficial_velocity)
     }
 
+    /// Velocities for these parameters from an independent solution, where there is one.
+    pub fn reference_profiles(&self) -> &'static [Station] {
+        if !is(self.solid_fraction, PI * 0.04) {
+            return &[];
+        }
+        let cases: [(f64, f64, &[Station]); 2] = [(1e-4, 5e-5, &RE_0_03), (1e-6, 1.5e-7, &RE_1)];
+        let own =
+            |&&(nu, f, _): &&(f64, f64, _)| is(self.viscosity, nu) && is(self.body_acceleration, f);
+        cases.iter().find(own).map_or(&[], |&(_, _, stations)| stations)
+    }
+
     /// The drag for these parameters in a square cell from an independent solution, where there is
     /// one.
     pub fn reference_drag(&self) -> Option<f64> {
-        let is = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
         // f L^3 / nu^2 decides between creeping and inertial flow.
         let forcing = self.body_acceleration * SIDE.powi(3) / self.viscosity.powi(2);
         let inertial = INERTIAL.iter().find(|(g, _)| is(forcing, *g));
@@ -97,6 +111,11 @@ impl Cylinder {
         let creeping = CREEPING.iter().find(|(phi, _)| is(self.solid_fraction, *phi))?;
         (forcing < 5.001).then_some(creeping.1)
     }
+}
+
+/// Largest relative difference of two parameters that count as the same.
+fn is(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() < 1e-6
 }
 
 /// Solid fraction and `k` of creeping flow along an axis of a square array: streamfunction series

@@ -105,4 +105,10 @@ impl Report {
             self.errors.insert(name, value / reference - 1.0);
         }
     }
+
+    /// Adds a result that is a relative error by itself: the norm of a difference, say.
+    pub fn error(&mut self, name: &'static str, error: f64) {
+        self.results.insert(name, error);
+        self.errors.insert(name, error);
+    }
 }

@@ -69,6 +69,10 @@ pub enum WallVelocity {
     /// most `beta_max` times its own (Morris, Fox & Zhu 1997, section 3.4).
     #[default]
     Linear,
+    /// A profile that is linear in the distance from the surface and has the surface's velocity
+    /// there, fitted to the fluid around by weighted least squares: the one that a particle of a
+    /// body has is the same for all that see it, and no particle is too near to the surface.
+    Fitted,
     /// Twice that of the surface less a mean of the fluid around, weighted with the kernel (Adami,
     /// Hu & Adams 2012, eqs. 22 and 23).
     Mirrored,

@@ -55,6 +55,12 @@ pub struct Fields<T> {
     /// `mu epsilon / rho^2`, the components xx, (xy, yy, (xz, yz, zz)); only with the viscosity in
     /// strain-rate form.
     pub stress_term: Vec<Rate<T>>,
+    /// Force of the fluid and of the rest of the body on a particle of a body, over its mass,
+    /// m/s^2; 0 in the fluid. Only where forces on bodies are asked for.
+    pub reaction: Vec<Rate<T>>,
+    /// Distance to the nearest surface of a body, m, negative inside; only where a profile of the
+    /// velocity is fitted.
+    pub surface_distance: Option<State<T>>,
     /// Velocity that friction sees in bodies, m/s; only where it is extrapolated from the fluid.
     pub mirrored_velocity: Vec<Rate<T>>,
     /// Pressure that bodies take from the fluid, Pa; only where it is extrapolated.
@@ -137,6 +143,11 @@ impl<T: Real> Fields<T> {
                 .enumerate()
                 .map(|(k, _)| columns.rate(&format!("stress_term_{k}")))
                 .collect(),
+            reaction: vector(Quantity::Reaction)
+                .map(|d| columns.rate(&name("reaction", d)))
+                .collect(),
+            surface_distance: used(Quantity::SurfaceDistance)
+                .then(|| columns.register("surface_distance")),
             mirrored_velocity: vector(Quantity::MirroredVelocity)
                 .map(|d| columns.rate(&name("mirrored_velocity", d)))
                 .collect(),
@@ -178,6 +189,8 @@ impl<T: Real> Fields<T> {
             Quantity::MirroredVelocity(a) => {
                 self.mirrored_velocity.get(a).copied().map(Column::Rate)
             }
+            Quantity::Reaction(a) => self.reaction.get(a).copied().map(Column::Rate),
+            Quantity::SurfaceDistance => self.surface_distance.map(Column::State),
             Quantity::WallPressure => self.wall_pressure.map(Column::Rate),
             Quantity::Density => Some(Column::State(self.density)),
             Quantity::DensitySlope(a) => self.density_slope.get(a).copied().map(Column::Rate),

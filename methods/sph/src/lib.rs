@@ -13,7 +13,7 @@
 //! | `sweep.rs` | a rate stage: gathers the neighbours of a particle once and runs the terms over them |
 //! | `candidates.rs`, `neighbourhood.rs` | candidates of a cell, in records; neighbours of a particle, in lanes |
 //! | [`kernel`] | smoothing functions |
-//! | [`body`], `wall.rs`, `wall_state.rs` | bodies, and how the fluid feels them |
+//! | [`body`], `wall.rs`, `wall_state.rs`, `surface_distance.rs` | bodies, and how the fluid feels them |
 //! | [`packing`] | lattices that are exactly periodic |
 //! | [`physics`], [`scheme`], [`start`] | what a scene models, how, and from which particles |
 //! | [`model`] | builds a framework model of it |
@@ -78,6 +78,7 @@ mod gas_pacing;
 mod neighbourhood;
 mod pacing;
 mod quantity;
+mod surface_distance;
 mod sweep;
 mod term;
 mod wall;

@@ -61,6 +61,36 @@ pub fn totals<T: Real>(
     }
 }
 
+/// Force of the fluid on a body, N (N/m in 2-D), pressure and friction: the sum of what the particles
+/// of bodies feel for which `belongs` says that they are of this body, of their position. What they
+/// exert on each other cancels; 0 where the model does not know forces on bodies, see
+/// [`Physics::forces_on_bodies`](crate::Physics::forces_on_bodies).
+pub fn force_on_body<T: Real>(
+    whole: &mut Whole<'_, Cells<T>>,
+    fields: &Fields<T>,
+    particle_mass: f64,
+    belongs: impl Fn([f64; 3]) -> bool + Sync,
+) -> [f64; 3] {
+    let Some(depth) = fields.wall_depth else { return [0.0; 3] };
+    let sums = whole.sum(|near| {
+        let depth = near.state(depth).own().whole();
+        let mut sums = [0.0; 3];
+        for i in (0..depth.len()).filter(|&i| depth[i] > T::zero()) {
+            let mut x = [0.0; 3];
+            for (x, &position) in x.iter_mut().zip(&fields.position) {
+                *x = near.state(position).own().whole()[i].as_f64();
+            }
+            if belongs(x) {
+                for (sum, &reaction) in sums.iter_mut().zip(&fields.reaction) {
+                    *sum += near.rate(reaction).own().whole()[i].as_f64();
+                }
+            }
+        }
+        sums
+    });
+    sums.map(|sum| sum * particle_mass)
+}
+
 /// Energy of the fluid, J.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Energies {

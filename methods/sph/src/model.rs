@@ -1,6 +1,7 @@
 //! Builds an SPH model from particles, a fluid and a choice of physics.
 
 use std::any::{Any, TypeId};
+use std::sync::Arc;
 
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::CellsOptions;
@@ -22,6 +23,7 @@ use crate::scheme::{Density, PressureForm, Scheme};
 use crate::smoothing::Smoothing;
 use crate::start::Start;
 use crate::state_equation::{StateEquation, Thermodynamics};
+use crate::surface_distance::SurfaceDistance;
 use crate::sweep::Sweep;
 use crate::term::continuity::Continuity;
 use crate::term::edac::PressureEvolution;
@@ -32,7 +34,7 @@ use crate::term::strain_rate::StrainRate;
 use crate::term::transport::{Drift, DriftStress};
 use crate::term::viscosity::MorrisViscosity;
 use crate::term::wall_pressure;
-use crate::term::wall_velocity::MirroredVelocity;
+use crate::term::wall_velocity::{FittedVelocity, MirroredVelocity};
 use crate::term::weighted::{WeightedPressureGradient, WeightedViscosity};
 use crate::term::{AnyTerm, Term};
 use crate::wall::{Friction, NoSlip, VelocityInBodies, Walls};
@@ -64,6 +66,9 @@ impl<T: Real> Sph<T> {
         physics.check()?;
         scheme.check()?;
         gas::check(fluid, physics, scheme)?;
+        if physics.forces_on_bodies {
+            check_forces_on_bodies(physics, scheme)?;
+        }
         if scheme.edac.is_some() && physics.energy {
             let (choice, others) = ("scheme.edac", "physics.energy = false");
             return Err(SphError::Choice { choice, others });
@@ -112,6 +117,20 @@ fn build_in_its_dimension<T: Real>(
     }
 }
 
+/// Refuses schemes in which bodies do not feel what they do to the fluid.
+fn check_forces_on_bodies(physics: &Physics, scheme: &Scheme) -> Result<(), SphError> {
+    let choice = "physics.forces_on_bodies";
+    let has_friction = physics.viscosity.is_some() && physics.slip == Slip::No;
+    if has_friction && scheme.wall_velocity == WallVelocity::Linear {
+        let others = "scheme.wall_velocity = Fitted or Mirrored";
+        return Err(SphError::Choice { choice, others });
+    }
+    if scheme.stabilisation.repulsion.is_some() {
+        return Err(SphError::Choice { choice, others: "no repulsion" });
+    }
+    Ok(())
+}
+
 /// What friction sees in bodies, beside their velocity.
 fn velocity_in_bodies(physics: &Physics, scheme: &Scheme) -> Option<VelocityInBodies> {
     let has_friction = physics.viscosity.is_some() && physics.slip == Slip::No;
@@ -119,7 +138,7 @@ fn velocity_in_bodies(physics: &Physics, scheme: &Scheme) -> Option<VelocityInBo
         return None;
     }
     match scheme.wall_velocity {
-        WallVelocity::Mirrored => Some(VelocityInBodies::Mirrored),
+        WallVelocity::Mirrored | WallVelocity::Fitted => Some(VelocityInBodies::Mirrored),
         WallVelocity::Linear => {
             physics.bodies.iter().any(Body::slides).then_some(VelocityInBodies::Surface)
         }
@@ -132,6 +151,7 @@ fn pieces_of_bodies<T: Real>(
     physics: &Physics,
     scheme: &Scheme,
     kernel: &Kernel<T>,
+    walls: &Arc<Walls>,
     mass: T,
     pressures: &[Quantity],
 ) -> Vec<Piece<T>> {
@@ -140,7 +160,14 @@ fn pieces_of_bodies<T: Real>(
     let least_kernel = T::of(1e-6) * kernel.w(T::zero());
     if velocity_in_bodies(physics, scheme) == Some(VelocityInBodies::Mirrored) {
         let slides = physics.bodies.iter().any(Body::slides);
-        pieces.push(Piece::Term(MirroredVelocity { slides, least_kernel }.into()));
+        if scheme.wall_velocity == WallVelocity::Fitted {
+            let h = kernel.smoothing_length();
+            let least_squares = least_kernel * h * h;
+            pieces.push(SurfaceDistance::piece(walls));
+            pieces.push(Piece::Term(FittedVelocity { slides, least_squares }.into()));
+        } else {
+            pieces.push(Piece::Term(MirroredVelocity { slides, least_kernel }.into()));
+        }
     }
     if !physics.bodies.is_empty() && scheme.wall_pressure == WallPressure::Extrapolated {
         let body_acceleration = physics.body_acceleration.map(T::of);
@@ -161,6 +188,7 @@ fn pieces<T: Real>(
     physics: &Physics,
     scheme: &Scheme,
     kernel: &Kernel<T>,
+    walls: &Arc<Walls>,
     mass: f64,
 ) -> Vec<Piece<T>> {
     let viscosity = physics.viscosity.map_or(0.0, |_| fluid.density * fluid.kinematic_viscosity);
@@ -216,7 +244,7 @@ fn pieces<T: Real>(
     let mut pressures: Vec<_> = terms.iter().flat_map(|term| term.reads(0)).collect();
     pressures.retain(|p| matches!(p, Quantity::Pressure | Quantity::PressureTerm));
     let state_equation = Thermodynamics::piece(fluid, scheme, mass, &pressures);
-    let of_bodies = pieces_of_bodies(fluid, physics, scheme, kernel, mass, &pressures);
+    let of_bodies = pieces_of_bodies(fluid, physics, scheme, kernel, walls, mass, &pressures);
     terms.into_iter().map(Piece::Term).chain([state_equation]).chain(of_bodies).collect()
 }
 
@@ -229,6 +257,12 @@ fn build<T: Real, const D: usize>(
 ) -> Result<Sph<T>, SphError> {
     let smoothing_length = scheme.smoothing_ratio * start.spacing;
     let particle_mass = fluid.density * start.particle_volume;
+    let longest = match scheme.smoothing {
+        Smoothing::Uniform => smoothing_length,
+        Smoothing::Adaptive { longest } => longest,
+    };
+    let sight = scheme.kernel.support() * longest;
+    let walls = Arc::new(Walls::new(&physics.bodies, &start.region, sight));
     let (kernels, pieces) = match (scheme.smoothing, fluid.state_equation) {
         (Smoothing::Adaptive { longest }, StateEquation::IdealGas { heat_ratio }) => {
             let kernel = AdaptiveKernel::<T, D>::new(scheme.kernel, T::of(longest));
@@ -239,7 +273,7 @@ fn build<T: Real, const D: usize>(
         }
         _ => {
             let kernel = Kernel::new(scheme.kernel, dimension, T::of(smoothing_length));
-            let mut pieces = pieces::<T>(fluid, physics, scheme, &kernel, particle_mass);
+            let mut pieces = pieces::<T>(fluid, physics, scheme, &kernel, &walls, particle_mass);
             pieces.extend(scheme.stabilisation.pieces(
                 fluid,
                 physics,
@@ -251,12 +285,14 @@ fn build<T: Real, const D: usize>(
             (Kernels::Uniform(kernel), pieces)
         }
     };
-    let range = kernels.range().as_f64();
-    let walls = Walls::new(&physics.bodies, &start.region, range);
 
+    let range = kernels.range().as_f64();
     let mut columns = Columns::new(start.positions.len());
     let has_bodies = !physics.bodies.is_empty();
-    let uses: Vec<_> = pieces.iter().flat_map(|p| [p.reads(D), p.writes(D)].concat()).collect();
+    let mut uses: Vec<_> = pieces.iter().flat_map(|p| [p.reads(D), p.writes(D)].concat()).collect();
+    if physics.forces_on_bodies {
+        uses.extend(Quantity::vector(Quantity::Reaction, D));
+    }
     let fields = Fields::<T>::declare(&mut columns, D, has_bodies, &uses);
     start.fill(&mut columns, &fields, fluid, &walls);
     let options = CellsOptions {
@@ -301,7 +337,7 @@ fn build<T: Real, const D: usize>(
     }
 
     // The time step follows from the last accelerations and signals: they must survive a restart.
-    for &rate in fields.acceleration.iter().chain(&fields.signal_speed) {
+    for &rate in fields.acceleration.iter().chain(&fields.reaction).chain(&fields.signal_speed) {
         columns.keep(rate.id());
     }
     let mut evolution = Evolution::new();

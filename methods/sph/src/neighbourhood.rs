@@ -235,7 +235,10 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         in_bodies: Option<VelocityInBodies>,
         jump: &mut [T],
     ) {
-        let (own, v) = (i[Quantity::Velocity(a)], self.values(Quantity::Velocity(a)));
+        let (mut own, v) = (i[Quantity::Velocity(a)], self.values(Quantity::Velocity(a)));
+        if let Some(in_bodies) = in_bodies {
+            own += i[in_bodies.component(a)];
+        }
         for (jump, &v) in jump.iter_mut().zip(v) {
             *jump = own - v;
         }

@@ -47,6 +47,9 @@ pub struct Physics {
     pub bodies: Vec<Body>,
     /// Whether the fluid sticks to them.
     pub slip: Slip,
+    /// Whether the forces of the fluid on bodies are wanted, see
+    /// [`measure::force_on_body`](crate::measure::force_on_body).
+    pub forces_on_bodies: bool,
 }
 
 impl Physics {

@@ -45,11 +45,15 @@ pub(crate) enum Quantity {
     SignalSpeed,
     PressureRate,
     NumberDensity,
+    /// Distance to the nearest surface of a body; negative inside.
+    SurfaceDistance,
+    /// Acceleration that a particle of a body would have from the forces of the fluid.
+    Reaction(usize),
 }
 
 impl Quantity {
     /// Number of different quantities.
-    pub const COUNT: usize = 55;
+    pub const COUNT: usize = 59;
 
     /// Its place among all.
     #[inline(always)]
@@ -81,6 +85,8 @@ impl Quantity {
             Self::SignalSpeed => 52,
             Self::PressureRate => 53,
             Self::NumberDensity => 54,
+            Self::SurfaceDistance => 55,
+            Self::Reaction(a) => 56 + a,
         }
     }
 

@@ -25,6 +25,8 @@ pub(crate) struct Sweep<T, const D: usize> {
     of_fluid: Vec<AnyTerm<T>>,
     /// The sums for particles of bodies.
     of_bodies: Vec<AnyTerm<T>>,
+    /// The forces between fluid and bodies, where those on bodies are asked for.
+    on_bodies: Vec<AnyTerm<T>>,
     gathered: Gathered<T>,
     outputs: Vec<(Quantity, Rate<T>)>,
     /// Acceleration of the fluid by a body force, m/s^2.
@@ -51,18 +53,33 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         writes.sort_unstable();
         writes.dedup();
         let accelerates = writes.contains(&Quantity::Acceleration(0));
+        if accelerates {
+            writes.extend(Quantity::vector(Quantity::Reaction, fields.reaction.len()));
+        }
         let outputs = writes.into_iter().filter_map(|q| Some((q, fields.rate(q)?))).collect();
         // Named after what it sums up, for error messages.
         let names: Vec<_> = terms.iter().map(AnyTerm::name).collect();
         let uses_kernel = terms.iter().any(Term::uses_kernel);
         let sees_velocity = terms.iter().any(Term::sees_velocity_in_bodies);
-        let of_bodies = |term: &&AnyTerm<T>| term.acts_on_bodies() || bodies_evolve;
+        // Particles of bodies do not move, and stress in them is not looked at.
+        let evolves = |term: &AnyTerm<T>| {
+            let of_fluid =
+                |q: &Quantity| matches!(q, Quantity::Acceleration(_) | Quantity::StressTerm(_));
+            !term.writes(D).iter().all(of_fluid)
+        };
+        let of_bodies =
+            |term: &&AnyTerm<T>| term.acts_on_bodies() || (bodies_evolve && evolves(term));
+        let slips = matches!(friction, Friction::None);
+        let on_bodies =
+            |term: &&AnyTerm<T>| term.pushes_bodies() && !(slips && term.sees_velocity_in_bodies());
+        let reacts = accelerates && !fields.reaction.is_empty();
         Self {
             name: format!("sph {}", names.join(", ")),
             kernels,
             gathered: Gathered::new(fields, reads.collect(), uses_kernel),
             of_fluid: terms.iter().filter(|term| !term.acts_on_bodies()).copied().collect(),
             of_bodies: terms.iter().filter(of_bodies).copied().collect(),
+            on_bodies: terms.iter().filter(on_bodies).filter(|_| reacts).copied().collect(),
             outputs,
             body_acceleration,
             acceleration_field: acceleration_field.filter(|_| accelerates).cloned(),
@@ -86,7 +103,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         for cell in block.cells() {
             let place = cell.span.start - first;
             if let Some(depth) = own_depth
-                && !self.acts_on_any(&depth[place..place + cell.span.len()])
+                && !depth[place..place + cell.span.len()].iter().any(|&d| self.acts_at(d))
             {
                 for column in &mut written[..self.outputs.len()] {
                     column[place..place + cell.span.len()].fill(T::zero());
@@ -102,8 +119,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
             };
             for k in 0..cell.span.len() {
                 let mut particle = candidates.particle(&self.gathered, k);
-                let terms = self.terms_for(particle.is_wall());
-                if terms.is_empty() {
+                if !self.acts_at(particle[Quantity::WallDepth]) {
                     for column in &mut written[..self.outputs.len()] {
                         column[place + k] = T::zero();
                     }
@@ -111,7 +127,7 @@ impl<T: Real, const D: usize> Sweep<T, D> {
                 }
                 particle.no_slip = self.no_slip(&particle);
                 neighbours.gather(&self.gathered, candidates, &particle, &self.kernels, longest);
-                let mut sums = self.sum(terms, &particle, neighbours, work);
+                let mut sums = self.sum(&particle, neighbours, work);
                 if let Some(field) = &self.acceleration_field
                     && !particle.is_wall()
                 {
@@ -129,34 +145,36 @@ impl<T: Real, const D: usize> Sweep<T, D> {
         if i.is_wall() { Extrapolation::none() } else { self.friction.at(i.position) }
     }
 
-    /// The terms that act on a particle.
+    /// Whether there are sums for a particle at this depth in a body.
     #[inline(always)]
-    fn terms_for(&self, is_wall: bool) -> &[AnyTerm<T>] {
-        if is_wall { &self.of_bodies } else { &self.of_fluid }
-    }
-
-    /// Whether there are terms for any of the particles that are so deep in bodies.
-    fn acts_on_any(&self, wall_depth: &[T]) -> bool {
-        wall_depth.iter().any(|&depth| !self.terms_for(depth > T::zero()).is_empty())
+    fn acts_at(&self, wall_depth: T) -> bool {
+        if wall_depth > T::zero() {
+            !(self.of_bodies.is_empty() && self.on_bodies.is_empty())
+        } else {
+            !self.of_fluid.is_empty()
+        }
     }
 
     /// All terms for one particle.
     #[inline(always)]
-    fn sum(
-        &self,
-        terms: &[AnyTerm<T>],
-        i: &Particle<T, D>,
-        near: &Neighbours<T, D>,
-        work: &mut Work<T>,
-    ) -> Values<T> {
+    fn sum(&self, i: &Particle<T, D>, near: &Neighbours<T, D>, work: &mut Work<T>) -> Values<T> {
         let mut sums = Values::zero();
-        sums.add(Quantity::Acceleration, self.body_acceleration);
-        for term in terms {
+        let accelerating = if i.is_wall() {
+            &self.on_bodies
+        } else {
+            sums.add(Quantity::Acceleration, self.body_acceleration);
+            &self.of_fluid
+        };
+        for term in accelerating {
             term.add(i, near, work, &mut sums);
         }
         if i.is_wall() {
             for a in 0..D {
+                sums[Quantity::Reaction(a)] = sums[Quantity::Acceleration(a)];
                 sums[Quantity::Acceleration(a)] = T::zero();
+            }
+            for term in &self.of_bodies {
+                term.add(i, near, work, &mut sums);
             }
         }
         sums

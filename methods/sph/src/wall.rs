@@ -5,6 +5,8 @@
 //! has where they are (Morris, Fox & Zhu 1997, section 3.4), or one that is extrapolated from the
 //! fluid (Adami, Hu & Adams 2012), or they are left out.
 
+use std::sync::Arc;
+
 use finegrain_framework::Real;
 use finegrain_framework::space::cells::Region;
 
@@ -118,7 +120,7 @@ impl VelocityInBodies {
 /// No-slip condition on the surfaces of all bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct NoSlip<T> {
-    pub walls: Walls,
+    pub walls: Arc<Walls>,
     /// Largest extrapolation, `beta_max - 1` in Morris et al. (1997): a fluid particle very near
     /// the surface would otherwise see wall particles at any velocity.
     pub most: T,

@@ -6,7 +6,7 @@ mod flow;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Real, Settings, Simulation};
 use finegrain_sph::{
-    Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation, Viscosity, measure,
+    Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation, Viscosity, WallVelocity, measure,
 };
 
 #[test]
@@ -34,6 +34,43 @@ fn momentum_to_round_off() {
             }
             let now = measure::totals(&mut simulation.whole(), &fields, mass);
             assert!(now.kinetic_energy < before.kinetic_energy);
+        }
+    }
+}
+
+/// What the fluid gains of momentum is what the body force gives it and the cylinder takes: to
+/// round-off, for a cylinder that feels every force that it exerts.
+#[test]
+fn momentum_that_a_body_takes() {
+    let virtual_particles = Scheme { wall_velocity: WallVelocity::Fitted, ..Scheme::default() };
+    let fitted = Scheme { wall_velocity: WallVelocity::Fitted, ..flow::edac() };
+    for (viscosity, scheme) in [
+        (Viscosity::Morris, virtual_particles),
+        (Viscosity::StrainRate, virtual_particles),
+        (Viscosity::Adami, flow::edac()),
+        (Viscosity::Adami, fitted),
+    ] {
+        for dims in [2, 3] {
+            let (mut simulation, fields, mass) =
+                flow::flow::<f64>(dims, viscosity, &scheme, true, Settings::default());
+            simulation.advance(5).unwrap();
+            let force = measure::force_on_body(&mut simulation.whole(), &fields, mass, |_| true);
+            let columns = simulation.columns();
+            let depth = columns.values(fields.wall_depth.unwrap());
+            for a in 0..dims {
+                let acceleration = columns.values(fields.acceleration[a]);
+                let driving = if a == 0 { 0.3 } else { 0.0 };
+                let (mut gained, mut size) = (0.0, 0.0);
+                for (&acceleration, _) in
+                    acceleration.iter().zip(depth).filter(|(_, depth)| **depth == 0.0)
+                {
+                    gained += mass * (acceleration - driving);
+                    size += (mass * acceleration).abs();
+                }
+                let missing = (gained + force[a]).abs() / size;
+                assert!(missing < 1e-13, "{viscosity:?} {dims}-D, {a}: {missing:e} of {size}");
+                assert!(force[a].abs() > 1e-4 * size || a > 0, "{force:?} of {size}");
+            }
         }
     }
 }

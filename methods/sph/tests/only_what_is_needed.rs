@@ -9,6 +9,7 @@ use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Columns, Real};
 use finegrain_sph::{
     Fluid, Packing, Physics, Scheme, ShockCapturing, Sph, Start, StateEquation, Viscosity,
+    WallVelocity,
 };
 
 /// Bytes a particle in all columns, and their names.
@@ -18,7 +19,7 @@ fn cost(columns: &Columns) -> (usize, BTreeSet<String>) {
 }
 
 /// Of a periodic box in 2-D.
-fn cost_of<T: Real>(physics: &Physics) -> (usize, BTreeSet<String>) {
+fn cost_of<T: Real>(physics: &Physics, scheme: &Scheme) -> (usize, BTreeSet<String>) {
     let lattice = Packing::Square.fit([1.0; 3], 0.1).unwrap();
     let start = Start {
         region: Region { lower: vec![0.0; 2], upper: vec![1.0; 2], periodic: vec![true; 2] },
@@ -33,24 +34,24 @@ fn cost_of<T: Real>(physics: &Physics) -> (usize, BTreeSet<String>) {
         kinematic_viscosity: 0.1,
         state_equation: StateEquation::Linear { background: 0.0 },
     };
-    let sph = Sph::<T>::new(&start, &fluid, physics, &Scheme::default()).unwrap();
+    let sph = Sph::<T>::new(&start, &fluid, physics, scheme).unwrap();
     cost(&sph.model.columns)
 }
 
 /// Checks that `physics` adds the columns `names`, to what there is without.
 fn adds(physics: &Physics, names: &[&str]) {
-    let (plain, known) = cost_of::<f64>(&Physics::default());
-    let (bytes, all) = cost_of::<f64>(physics);
+    let (plain, known) = cost_of::<f64>(&Physics::default(), &Scheme::default());
+    let (bytes, all) = cost_of::<f64>(physics, &Scheme::default());
     let new: Vec<_> = all.difference(&known).map(String::as_str).collect();
     assert_eq!(new, names);
     assert_eq!(bytes - plain, 8 * names.len());
-    let (bytes, all) = (cost_of::<f32>(physics).0, 4 * all.len());
+    let (bytes, all) = (cost_of::<f32>(physics, &Scheme::default()).0, 4 * all.len());
     assert_eq!(bytes, all, "single precision is half of it but for the identity");
 }
 
 #[test]
 fn nothing_more_than_mass_and_momentum_by_default() {
-    let (bytes, names) = cost_of::<f64>(&Physics::default());
+    let (bytes, names) = cost_of::<f64>(&Physics::default(), &Scheme::default());
     let nothing =
         ["energy", "stress", "wall", "sound_speed", "smoothing_length", "grad_h", "signal"];
     for name in nothing {
@@ -78,6 +79,28 @@ fn viscosity() {
 fn bodies() {
     let body = Shape::Sphere { centre: [0.5, 0.5, 0.0], radius: 0.2 };
     adds(&Physics { bodies: vec![body.into()], ..Physics::default() }, &["wall_depth"]);
+}
+
+#[test]
+fn friction_in_bodies_and_forces_on_them() {
+    let body = Shape::Sphere { centre: [0.5, 0.5, 0.0], radius: 0.2 };
+    let physics = Physics {
+        viscosity: Some(Viscosity::Morris),
+        bodies: vec![body.into()],
+        ..Physics::default()
+    };
+    let names = |wall_velocity, forces_on_bodies| {
+        let physics = Physics { forces_on_bodies, ..physics.clone() };
+        cost_of::<f64>(&physics, &Scheme { wall_velocity, ..Scheme::default() }).1
+    };
+    let owned = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect::<BTreeSet<String>>();
+    let linear = names(WallVelocity::Linear, false);
+    let mirrored = names(WallVelocity::Mirrored, false);
+    assert_eq!(&mirrored - &linear, owned(&["mirrored_velocity_x", "mirrored_velocity_y"]));
+    let fitted = names(WallVelocity::Fitted, false);
+    assert_eq!(&fitted - &mirrored, owned(&["surface_distance"]));
+    let forces = names(WallVelocity::Fitted, true);
+    assert_eq!(&forces - &fitted, owned(&["reaction_x", "reaction_y"]));
 }
 
 #[test]

@@ -115,6 +115,21 @@ fn velocity_is_mirrored_about_that_of_the_surface() {
     }
 }
 
+#[test]
+fn a_fitted_profile_continues_the_shear_whatever_the_distance_to_the_surface() {
+    let physics = || Physics { viscosity: Some(Viscosity::Morris), ..Physics::default() };
+    let scheme = Scheme { wall_velocity: WallVelocity::Fitted, ..adami() };
+    let shear = |y: f64| 0.5 + 2.0 * (y - 0.2);
+    let (simulation, fields) = begun(physics(), &scheme, [0.5, 0.0, 0.0], shear, |_| DENSITY);
+    let fitted = simulation.columns().values(fields.mirrored_velocity[0]);
+    let seen = near_surface(&simulation, &fields, true, |i| fitted[i]);
+    let below: Vec<_> = seen.into_iter().filter(|(y, _)| *y < 0.5).collect();
+    assert_eq!(below.len(), 40);
+    for (y, v) in below {
+        assert!((v - shear(y)).abs() < 1e-12, "{v} at {y}");
+    }
+}
+
 /// Acceleration along x of the particles next to the surfaces below and above, in the shear
 /// `v = 1 + (y - 0.2)`.
 fn drag(physics: Physics, scheme: &Scheme, surface_velocity: f64) -> [f64; 2] {

@@ -120,8 +120,8 @@ impl<T: Real> Flow<T> for CavityFlow {
         let upright: Vec<_> = (0..count).map(|k| [0.5, along(k)]).collect();
         let across: Vec<_> = (0..count).map(|k| [along(k), 0.5]).collect();
         let columns = simulation.columns();
-        let u = profile::velocities(columns, fields, &upright, spacing);
-        let v = profile::velocities(columns, fields, &across, spacing);
+        let u = profile::velocities(columns, fields, &upright, spacing, None);
+        let v = profile::velocities(columns, fields, &across, spacing, None);
         let is_steady = summary.time >= Flow::<T>::end_time(self);
         let reference = self.scene.reference().filter(|_| is_steady);
         let least = |v: &[[f64; 2]], a: usize| v.iter().map(|v| v[a]).fold(f64::INFINITY, f64::min);

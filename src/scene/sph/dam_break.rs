@@ -85,8 +85,7 @@ impl<T: Real> Flow<T> for DamFlow {
             let times = water.times().iter().map(|t| t / self.scene.time());
             let front: Vec<_> = times.zip(front.map(|x| (x + half) / WIDTH)).collect();
             if let Some(found) = DamBreak::front_error(&front, GATE_GONE) {
-                report.results.insert("front", found.error);
-                report.errors.insert("front", found.error);
+                report.error("front", found.error);
                 report.results.insert("gate_shift", found.shift);
             }
             if let Some(found) = DamBreak::front_error(&front, 0.0) {

@@ -115,8 +115,7 @@ pub(super) fn judge_energy<T: Real>(
     let history = summary.histories[0].column("total_energy").into_iter().flatten();
     let history: Vec<f64> = history.chain([last]).collect();
     let drift = history.iter().map(|e| (e / history[0] - 1.0).abs()).fold(0.0, f64::max);
-    report.results.insert("energy_drift", drift);
-    report.errors.insert("energy_drift", drift);
+    report.error("energy_drift", drift);
 }
 
 /// A chart of the density along a line, in at most 150 pieces, with the exact one.

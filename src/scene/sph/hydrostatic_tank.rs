@@ -94,8 +94,7 @@ impl<T: Real> Flow<T> for TankFlow {
             count += 1.0;
         }
         let error = (squared / count).sqrt() / self.scene.pressure(0.0);
-        report.results.insert("pressure_l2", error);
-        report.errors.insert("pressure_l2", error);
+        report.error("pressure_l2", error);
     }
 
     fn title(&self) -> String {

@@ -170,8 +170,8 @@ const WALL_PARAMETERS: [Parameter; 3] = [
     ),
     Parameter::choice(
         "wall_velocity",
-        &["linear", "mirrored"],
-        "velocity in bodies: linear profile (Morris et al. 1997), or of Adami et al. (2012)",
+        &["linear", "mirrored", "fitted"],
+        "velocity in bodies: linear profile (Morris et al. 1997), of Adami et al. (2012), or fitted",
     ),
     Parameter::number(
         "beta_max",
@@ -191,6 +191,7 @@ fn scheme_with_walls(parameters: &Parameters) -> Scheme {
         },
         wall_velocity: match parameters.choice("wall_velocity") {
             "mirrored" => WallVelocity::Mirrored,
+            "fitted" => WallVelocity::Fitted,
             _ => WallVelocity::Linear,
         },
         beta_max: parameters.number("beta_max"),

@@ -134,8 +134,7 @@ impl<T: Real> Flow<T> for Implosion {
             norm += exact / density;
         }
         if norm > 0.0 {
-            report.results.insert("density_l1", error / norm);
-            report.errors.insert("density_l1", error / norm);
+            report.error("density_l1", error / norm);
         }
     }
 

@@ -4,12 +4,14 @@ use finegrain_framework::{Columns, Real, State};
 use finegrain_sph::Fields;
 
 /// Velocity at each of `points`: a linear fit to the particles of the fluid within three spacings,
-/// weighted with a Gaussian. NaN where there are too few.
+/// weighted with a Gaussian. NaN where there are too few. With the sides of a cell, the particles
+/// are those of its periodic images, too.
 pub fn velocities<T: Real>(
     columns: &Columns,
     fields: &Fields<T>,
     points: &[[f64; 2]],
     spacing: f64,
+    cell: Option<[f64; 2]>,
 ) -> Vec<[f64; 2]> {
     // Sums of w (1, x, y) (1, x, y)^T, and of w (1, x, y) (u, v).
     let mut sums = vec![([[0.0; 3]; 3], [[0.0; 2]; 3]); points.len()];
@@ -21,7 +23,13 @@ pub fn velocities<T: Real>(
         let at = [value(fields.position[0]), value(fields.position[1])];
         let v = [value(fields.velocity[0]), value(fields.velocity[1])];
         for ((matrix, right), point) in sums.iter_mut().zip(points) {
-            let x = [(at[0] - point[0]) / spacing, (at[1] - point[1]) / spacing];
+            let mut x = [at[0] - point[0], at[1] - point[1]];
+            if let Some(cell) = cell {
+                for a in 0..2 {
+                    x[a] -= cell[a] * (x[a] / cell[a]).round();
+                }
+            }
+            let x = x.map(|x| x / spacing);
             let squared = x[0] * x[0] + x[1] * x[1];
             if squared < 9.0 {
                 let (weight, basis) = ((-squared).exp(), [1.0, x[0], x[1]]);

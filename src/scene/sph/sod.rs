@@ -138,8 +138,7 @@ impl<T: Real> Flow<T> for Tube {
         for (name, [error, norm]) in
             ["density_l1", "velocity_l1", "pressure_l1"].into_iter().zip(l1)
         {
-            report.results.insert(name, error / norm);
-            report.errors.insert(name, error / norm);
+            report.error(name, error / norm);
         }
     }
 

@@ -31,6 +31,10 @@ impl<T: Real> Term<T> for ArtificialPressure<T> {
         true
     }
 
+    fn pushes_bodies(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn add<const D: usize>(
         &self,

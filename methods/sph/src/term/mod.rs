@@ -49,7 +49,7 @@ use tensile_control::TensileControl;
 use transport::{Drift, DriftStress};
 use viscosity::MorrisViscosity;
 use wall_pressure::WallPressure;
-use wall_velocity::MirroredVelocity;
+use wall_velocity::{FittedVelocity, MirroredVelocity};
 use weighted::{WeightedPressureGradient, WeightedViscosity};
 
 /// One piece of physics: a sum over neighbours.
@@ -72,6 +72,12 @@ pub(crate) trait Term<T: Real> {
 
     /// Whether it is a sum for the particles of bodies, and not for those of the fluid.
     fn acts_on_bodies(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a force between pairs that particles of bodies feel as much as those of the
+    /// fluid do.
+    fn pushes_bodies(&self) -> bool {
         false
     }
 
@@ -143,6 +149,12 @@ macro_rules! terms {
                 }
             }
 
+            fn pushes_bodies(&self) -> bool {
+                match self {
+                    $(Self::$Name(term) => Term::<T>::pushes_bodies(term),)*
+                }
+            }
+
             #[inline(always)]
             fn add<const D: usize>(
                 &self,
@@ -167,6 +179,7 @@ terms!(
     MorrisViscosity<T>,
     Energy<T>,
     MirroredVelocity<T>,
+    FittedVelocity<T>,
     WallPressure<T>,
     MomentMatrix<T>,
     DensitySlope<T>,

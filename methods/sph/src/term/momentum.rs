@@ -22,6 +22,10 @@ impl<T: Real> Term<T> for PressureGradient<T> {
         Quantity::vector(Quantity::Acceleration, dims).collect()
     }
 
+    fn pushes_bodies(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn add<const D: usize>(
         &self,
@@ -64,6 +68,10 @@ impl<T: Real> Term<T> for StressDivergence<T> {
         Quantity::vector(Quantity::Acceleration, dims).collect()
     }
 
+    fn pushes_bodies(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn add<const D: usize>(
         &self,
@@ -81,6 +89,13 @@ impl<T: Real> Term<T> for StressDivergence<T> {
                 let own = i[Quantity::StressTerm(c)];
                 let stress = near.values(Quantity::StressTerm(c));
                 match near.wall_depth() {
+                    Some(depth) if i.is_wall() => {
+                        let lanes = weight.iter_mut().zip(factor).zip(stress).zip(depth);
+                        for (((weight, &factor), &stress), &depth) in lanes {
+                            let seen = if depth > T::zero() { T::zero() } else { stress };
+                            *weight = factor * (seen + seen);
+                        }
+                    }
                     Some(depth) => {
                         let lanes = weight.iter_mut().zip(factor).zip(stress).zip(depth);
                         for (((weight, &factor), &stress), &depth) in lanes {

@@ -35,6 +35,10 @@ impl<T: Real> Term<T> for MorrisViscosity<T> {
         true
     }
 
+    fn pushes_bodies(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn add<const D: usize>(
         &self,

@@ -24,6 +24,10 @@ impl<T: Real> Term<T> for WeightedPressureGradient<T> {
         Quantity::vector(Quantity::Acceleration, dims).collect()
     }
 
+    fn pushes_bodies(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn add<const D: usize>(
         &self,
@@ -71,6 +75,10 @@ impl<T: Real> Term<T> for WeightedViscosity<T> {
     }
 
     fn sees_velocity_in_bodies(&self) -> bool {
+        true
+    }
+
+    fn pushes_bodies(&self) -> bool {
         true
     }
 

@@ -61,7 +61,7 @@ pub fn flow<T: Real>(
         centre: [0.5 * lengths[0], 0.5 * lengths[1], 0.0],
         radius: 0.2,
     };
-    let turns = scheme.wall_velocity == WallVelocity::Mirrored;
+    let turns = scheme.wall_velocity != WallVelocity::Linear;
     let body = Body { shape, surface_velocity: [if turns { 0.1 } else { 0.0 }, 0.0, 0.0] };
     let fluid = Fluid {
         density: 1.0,
@@ -73,6 +73,7 @@ pub fn flow<T: Real>(
         viscosity: Some(viscosity),
         body_acceleration: if has_body { [0.3, 0.0, 0.0] } else { [0.0; 3] },
         bodies: if has_body { vec![body] } else { Vec::new() },
+        forces_on_bodies: has_body && scheme.wall_velocity != WallVelocity::Linear,
         ..Physics::default()
     };
     let sph = Sph::<T>::new(&start, &fluid, &physics, scheme).unwrap();
