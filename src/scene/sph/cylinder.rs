@@ -1,11 +1,14 @@
 //! The cylinder in SPH: particles on a lattice, those inside the cylinder at rest.
 //!
-//! By default pressure in the cylinder is taken from the fluid, and the velocity there is a linear
-//! profile, fitted to the fluid, through zero on the exact surface, not on the steps of the lattice.
-//! The linear profile of Morris et al. (1997), `wall_velocity=linear`, needs a largest
-//! extrapolation, on which the drag depends, and does not converge.
+//! By default pressure evolves with diffusion (Ramachandran & Puri 2019) and particles drift towards
+//! an even distribution (Adami, Hu & Adams 2013, four times as strong): without that the flow at
+//! Re = 1 does not become steady, for the particles lose their order where streamlines converge.
+//! Pressure in the cylinder is taken from the fluid, and the velocity there is a linear profile,
+//! fitted to the fluid, through zero on the exact surface, not on the steps of the lattice. The
+//! profile of Morris et al. (1997), `wall_velocity=linear`, needs a largest extrapolation, on which
+//! the drag depends, and with it the drag does not converge.
 
-use finegrain_framework::run::{Every, Run, Stopped, Summary};
+use finegrain_framework::run::{Every, History, Run, Stopped, Summary};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Columns, Real, Simulation};
@@ -32,10 +35,13 @@ pub fn parameters() -> Vec<Parameter> {
             &super::WALL_PARAMETERS,
             &own,
         ],
-        &[("beta_max", 6.0)],
+        &[("beta_max", 6.0), ("transport", 4.0)],
         &[
             ("kernel", "quintic-spline"),
             ("viscous_form", "adami"),
+            ("density", "summation"),
+            ("pressure", "edac"),
+            ("pressure_form", "density-weighted"),
             ("wall_pressure", "extrapolated"),
             ("wall_velocity", "fitted"),
         ],
@@ -104,6 +110,22 @@ pub(crate) fn start(dims: usize, lattice: &Lattice, spacing: f64) -> Start {
         positions: lattice.positions().collect(),
         velocities: Vec::new(),
     }
+}
+
+/// Samples of the mean velocity, three a relaxation time, over which a flow is averaged whose
+/// particles never quite come to rest.
+const LATE_SAMPLES: usize = 15;
+/// Such a flow is steady if the mean differs by less than this part from the one before.
+const STEADY_MEAN: f64 = 5e-3;
+
+/// Mean of the last samples of the velocity along x, and by which part it differs from the mean of
+/// as many before; `None` without twice as many samples.
+fn late_mean(history: &History) -> Option<(f64, f64)> {
+    let velocity: Vec<f64> = history.column("velocity_x")?.collect();
+    let mut windows = velocity.rchunks_exact(LATE_SAMPLES);
+    let mean = |window: &[f64]| window.iter().sum::<f64>() / LATE_SAMPLES as f64;
+    let (last, before) = (mean(windows.next()?), mean(windows.next()?));
+    Some((last, (before / last - 1.0).abs()))
 }
 
 struct CylinderFlow {
@@ -180,15 +202,26 @@ impl<T: Real> Flow<T> for CylinderFlow {
         fields: &Fields<T>,
         mass: f64,
     ) {
-        let [x, y, z] =
+        let [mut x, y, z] =
             measure::totals(&mut simulation.whole(), fields, mass).flow.map(|f| f / self.volume);
         if x == 0.0 {
             return;
         }
         // The reference is of steady flow through a square array.
         let [length, width] = self.sides;
-        let is_steady = summary.stopped == Stopped::Criterion;
         let is_square = (length / width - 1.0).abs() < 1e-9;
+        let mut is_steady = summary.stopped == Stopped::Criterion;
+        if !is_steady && let Some((mean, change)) = late_mean(&summary.histories[0]) {
+            let percent = 100.0 * change;
+            is_steady = change < STEADY_MEAN;
+            if is_steady {
+                x = mean;
+                report.notes.push(format!(
+                    "steady but for {percent:.2} %: the mean velocity is that of the last \
+                     {LATE_SAMPLES} samples"
+                ));
+            }
+        }
         if !is_steady {
             report.notes.push("not steady: the drag is not that of steady flow".to_owned());
         }
