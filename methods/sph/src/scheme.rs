@@ -32,6 +32,7 @@ pub struct Scheme {
     pub pressure_form: PressureForm,
     /// Drift of the particles towards an even distribution, in units of that of Adami, Hu & Adams
     /// (2013) with a background pressure of `rho c^2` and a time step of `0.25 h / c`; none if 0.
+    /// Goes only with density as a sum.
     pub transport: f64,
     /// Where the pressure in bodies comes from.
     pub wall_pressure: WallPressure,
@@ -81,6 +82,12 @@ impl Scheme {
             }
         }
         not_negative("transport", self.transport)?;
+        if self.transport > 0.0 && self.density == Density::Continuity {
+            // The equation of continuity has no w . grad rho: density would stay behind where
+            // particles drift to.
+            let (choice, others) = ("transport above 0", "density = summation");
+            return Err(SphError::Choice { choice, others });
+        }
         self.stabilisation.check()
     }
 }

@@ -45,6 +45,8 @@ fn numbers_outside_their_range() {
     let of_scheme = |scheme: Scheme| complaint(&start(), &FLUID, &physics, &scheme);
     assert!(of_scheme(Scheme { skin: 0.0, ..scheme }).contains("skin is 0"));
     assert!(of_scheme(Scheme { transport: -1.0, ..scheme }).contains("transport is -1"));
+    let said = of_scheme(Scheme { transport: 1.0, ..scheme });
+    assert!(said.contains("transport above 0 goes only with density = summation"), "{said}");
     let edac = Some(Edac { diffusion: f64::NAN });
     assert!(of_scheme(Scheme { edac, ..scheme }).contains("edac.diffusion is NaN"));
     let edac = Some(Edac { diffusion: 0.5 });

@@ -120,7 +120,8 @@ const PARAMETERS: [Parameter; 7] = [
         0.0,
         [0.0, 20.0],
         "",
-        "strength of the transport velocity (Adami et al. 2013); 0 is none, 1 is theirs",
+        "strength of the transport velocity (Adami et al. 2013), with density=summation; 0 is none, 1 \
+         is theirs",
     ),
     Parameter::number(
         "background_pressure",
