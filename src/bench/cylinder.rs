@@ -133,7 +133,7 @@ fn empty_rows<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> 
             neighbours: measure::mean_neighbours(&mut simulation.whole()),
             sweeps: match plan.viscosity {
                 Viscosity::StrainRate => 2,
-                Viscosity::Morris | Viscosity::Adami => 1,
+                Viscosity::Morris | Viscosity::Adami | Viscosity::Monaghan => 1,
             },
             seconds_per_step: Vec::new(),
             alone: Vec::new(),

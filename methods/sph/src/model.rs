@@ -27,6 +27,7 @@ use crate::term::continuity::Continuity;
 use crate::term::edac::PressureEvolution;
 use crate::term::energy::Energy;
 use crate::term::momentum::{PressureGradient, StressDivergence};
+use crate::term::monaghan_viscosity::MonaghanViscosity;
 use crate::term::number_density::NumberDensity;
 use crate::term::strain_rate::StrainRate;
 use crate::term::transport::{Drift, DriftStress};
@@ -167,6 +168,7 @@ fn pieces<T: Real>(
     let (mass, dynamic_viscosity) = (T::of(mass), T::of(viscosity));
     let in_bodies = velocity_in_bodies(physics, scheme);
     let h = kernel.smoothing_length();
+    let eta_squared = T::of(0.01) * h * h;
     let mut terms: Vec<AnyTerm<T>> = vec![match scheme.density {
         Density::Continuity => Continuity { mass }.into(),
         Density::Summation => NumberDensity.into(),
@@ -201,8 +203,11 @@ fn pieces<T: Real>(
     match physics.viscosity {
         Some(Viscosity::StrainRate) => terms.push(StressDivergence { mass }.into()),
         Some(Viscosity::Morris) => {
-            let eta_squared = T::of(0.01) * h * h;
             let term = MorrisViscosity { mass, dynamic_viscosity, eta_squared, in_bodies };
+            terms.push(term.into());
+        }
+        Some(Viscosity::Monaghan) => {
+            let term = MonaghanViscosity { mass, dynamic_viscosity, eta_squared, in_bodies };
             terms.push(term.into());
         }
         Some(Viscosity::Adami) => {
@@ -333,7 +338,7 @@ fn build<T: Real, const D: usize>(
             fields: fields.clone(),
             smoothing_length,
             sound_speed: fluid.sound_speed,
-            diffusivity: diffusivity(fluid, physics, scheme, smoothing_length),
+            diffusivity: diffusivity(fluid, physics, scheme, smoothing_length, D),
             body_acceleration: magnitude,
             courant_number: scheme.courant_number,
             transport: scheme.transport,
@@ -352,8 +357,22 @@ fn build<T: Real, const D: usize>(
 }
 
 /// The largest diffusivity, of momentum or pressure, m^2/s.
-fn diffusivity(fluid: &Fluid, physics: &Physics, scheme: &Scheme, smoothing_length: f64) -> f64 {
-    let of_momentum = physics.viscosity.map_or(0.0, |_| fluid.kinematic_viscosity);
+fn diffusivity(
+    fluid: &Fluid,
+    physics: &Physics,
+    scheme: &Scheme,
+    smoothing_length: f64,
+    dims: usize,
+) -> f64 {
+    let of_momentum = physics.viscosity.map_or(0.0, |form| {
+        let nu = fluid.kinematic_viscosity;
+        match form {
+            // What neighbours in all directions take off a particle's velocity is (d + 2) / d times
+            // that of the form of Morris, for which the limit of the time step was made.
+            Viscosity::Monaghan => nu * (dims as f64 + 2.0) / dims as f64,
+            _ => nu,
+        }
+    });
     let of_pressure =
         scheme.edac.map_or(0.0, |edac| edac.diffusion * fluid.sound_speed * smoothing_length / 8.0);
     of_momentum.max(of_pressure)

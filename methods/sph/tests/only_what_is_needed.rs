@@ -71,6 +71,7 @@ fn energy() {
 fn viscosity() {
     let of = |form| Physics { viscosity: Some(form), ..Physics::default() };
     adds(&of(Viscosity::Morris), &[]);
+    adds(&of(Viscosity::Monaghan), &[]);
     adds(&of(Viscosity::StrainRate), &["stress_term_0", "stress_term_1", "stress_term_2"]);
 }
 

@@ -90,8 +90,9 @@ fn liquid_scheme(parameters: &Parameters) -> Scheme {
 const PARAMETERS: [Parameter; 7] = [
     Parameter::choice(
         "viscous_form",
-        &["morris", "strain-rate", "adami"],
-        "Morris et al. (1997), eq. I.2 of Holmes et al. (2011) or Adami et al. (2012)",
+        &["morris", "strain-rate", "adami", "monaghan"],
+        "Morris et al. (1997), eq. I.2 of Holmes et al. (2011), Adami et al. (2012), or Monaghan \
+         (2005), which conserves angular momentum",
     ),
     Parameter::choice(
         "density",
@@ -221,6 +222,7 @@ fn viscosity(parameters: &Parameters) -> Viscosity {
     match parameters.choice("viscous_form") {
         "strain-rate" => Viscosity::StrainRate,
         "adami" => Viscosity::Adami,
+        "monaghan" => Viscosity::Monaghan,
         _ => Viscosity::Morris,
     }
 }

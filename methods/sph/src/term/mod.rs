@@ -13,6 +13,7 @@ pub(crate) mod energy;
 pub(crate) mod gas_pressure;
 pub(crate) mod moment;
 pub(crate) mod momentum;
+pub(crate) mod monaghan_viscosity;
 pub(crate) mod number_density;
 pub(crate) mod repulsion;
 pub(crate) mod shifting;
@@ -40,6 +41,7 @@ use energy::Energy;
 use gas_pressure::GasPressure;
 use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
+use monaghan_viscosity::MonaghanViscosity;
 use number_density::NumberDensity;
 use repulsion::Repulsion;
 use shifting::Shifting;
@@ -165,6 +167,7 @@ terms!(
     PressureGradient<T>,
     StressDivergence<T>,
     MorrisViscosity<T>,
+    MonaghanViscosity<T>,
     Energy<T>,
     MirroredVelocity<T>,
     WallPressure<T>,
