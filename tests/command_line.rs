@@ -116,7 +116,8 @@ fn a_restarted_run_ends_with_the_bits_of_the_uninterrupted_one() {
 
 #[test]
 fn so_does_one_with_walls_a_free_surface_or_gas() {
-    let edac = ["transport=1", "density=summation", "pressure=edac", "pressure_form=density-weighted"];
+    let edac =
+        ["transport=1", "density=summation", "pressure=edac", "pressure_form=density-weighted"];
     for (scene, resolution, more) in [
         ("couette", "resolution=10", &edac[..]),
         ("cylinder", "resolution=16", &["viscous_form=strain-rate"]),

@@ -29,6 +29,7 @@ use crate::term::energy::Energy;
 use crate::term::momentum::{PressureGradient, StressDivergence};
 use crate::term::monaghan_viscosity::MonaghanViscosity;
 use crate::term::number_density::NumberDensity;
+use crate::term::pressure_difference::PressureDifference;
 use crate::term::strain_rate::StrainRate;
 use crate::term::transport::{Drift, DriftStress};
 use crate::term::viscosity::MorrisViscosity;
@@ -199,6 +200,7 @@ fn pieces<T: Real>(
     terms.push(match scheme.pressure_form {
         PressureForm::Symmetric => PressureGradient { mass }.into(),
         PressureForm::DensityWeighted => WeightedPressureGradient { mass }.into(),
+        PressureForm::Antisymmetric => PressureDifference { mass }.into(),
     });
     match physics.viscosity {
         Some(Viscosity::StrainRate) => terms.push(StressDivergence { mass }.into()),

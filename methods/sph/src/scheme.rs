@@ -76,8 +76,9 @@ impl Scheme {
         positive("beta_max", self.beta_max)?;
         if let Some(edac) = self.edac {
             not_negative("edac.diffusion", edac.diffusion)?;
-            if self.pressure_form != PressureForm::DensityWeighted {
-                let (choice, others) = ("edac", "pressure_form = DensityWeighted");
+            if self.pressure_form == PressureForm::Symmetric {
+                let (choice, others) =
+                    ("edac", "pressure_form = density-weighted or antisymmetric");
                 return Err(SphError::Choice { choice, others });
             }
         }
@@ -86,6 +87,10 @@ impl Scheme {
             // The equation of continuity has no w . grad rho: density would stay behind where
             // particles drift to.
             let (choice, others) = ("transport above 0", "density = summation");
+            return Err(SphError::Choice { choice, others });
+        }
+        if self.stabilisation.tensile_control && self.pressure_form != PressureForm::Symmetric {
+            let (choice, others) = ("tensile control", "pressure_form = symmetric");
             return Err(SphError::Choice { choice, others });
         }
         self.stabilisation.check()
@@ -121,4 +126,6 @@ pub enum PressureForm {
     /// `(rho_j p_i + rho_i p_j) / (rho_i + rho_j) (V_i^2 + V_j^2) / m^2` (Adami, Hu & Adams 2012,
     /// eq. 6).
     DensityWeighted,
+    /// `p_j - p_i`: exactly nothing where the pressure is constant, but momentum is not conserved.
+    Antisymmetric,
 }

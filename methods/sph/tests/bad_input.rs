@@ -5,7 +5,8 @@ use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Settings, Simulation};
 use finegrain_sph::{
     ArtificialViscosity, Body, DensityDiffusion, DiffusionForm, Edac, Fluid, Packing, Physics,
-    Scheme, ShockCapturing, Smoothing, Sph, Stabilisation, Start, StateEquation, Viscosity,
+    PressureForm, Scheme, ShockCapturing, Smoothing, Sph, Stabilisation, Start, StateEquation,
+    Viscosity,
 };
 
 fn start() -> Start {
@@ -47,6 +48,10 @@ fn numbers_outside_their_range() {
     assert!(of_scheme(Scheme { transport: -1.0, ..scheme }).contains("transport is -1"));
     let said = of_scheme(Scheme { transport: 1.0, ..scheme });
     assert!(said.contains("transport above 0 goes only with density = summation"), "{said}");
+    let stabilisation = Stabilisation { tensile_control: true, ..Stabilisation::NONE };
+    let pressure_form = PressureForm::Antisymmetric;
+    let said = of_scheme(Scheme { stabilisation, pressure_form, ..scheme });
+    assert!(said.contains("tensile control goes only with pressure_form"), "{said}");
     let edac = Some(Edac { diffusion: f64::NAN });
     assert!(of_scheme(Scheme { edac, ..scheme }).contains("edac.diffusion is NaN"));
     let edac = Some(Edac { diffusion: 0.5 });

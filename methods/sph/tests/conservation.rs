@@ -120,9 +120,7 @@ fn gained_by_a_free_disc(viscosity: Viscosity) -> [f64; 3] {
         for i in 0..columns.points() {
             let turning = x[i] * v[i] - y[i] * u[i];
             let (speed, arm) = (u[i].hypot(v[i]), x[i].hypot(y[i]));
-            for (sum, s) in
-                sums.iter_mut().zip([u[i], v[i], turning, speed, speed, speed * arm])
-            {
+            for (sum, s) in sums.iter_mut().zip([u[i], v[i], turning, speed, speed, speed * arm]) {
                 *sum += s;
             }
         }

@@ -106,8 +106,9 @@ const PARAMETERS: [Parameter; 7] = [
     ),
     Parameter::choice(
         "pressure_form",
-        &["symmetric", "density-weighted"],
-        "eq. I.2 of Holmes et al. (2011) or Adami et al. (2012)",
+        &["symmetric", "density-weighted", "antisymmetric"],
+        "eq. I.2 of Holmes et al. (2011), Adami et al. (2012), or differences, which do not conserve \
+         momentum",
     ),
     Parameter::number(
         "edac_diffusion",
@@ -144,6 +145,7 @@ fn scheme(parameters: &Parameters) -> Scheme {
             .then(|| Edac { diffusion: parameters.number("edac_diffusion") }),
         pressure_form: match parameters.choice("pressure_form") {
             "density-weighted" => PressureForm::DensityWeighted,
+            "antisymmetric" => PressureForm::Antisymmetric,
             _ => PressureForm::Symmetric,
         },
         transport: parameters.number("transport"),

@@ -15,6 +15,7 @@ pub(crate) mod moment;
 pub(crate) mod momentum;
 pub(crate) mod monaghan_viscosity;
 pub(crate) mod number_density;
+pub(crate) mod pressure_difference;
 pub(crate) mod repulsion;
 pub(crate) mod shifting;
 pub(crate) mod shock_viscosity;
@@ -43,6 +44,7 @@ use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
 use monaghan_viscosity::MonaghanViscosity;
 use number_density::NumberDensity;
+use pressure_difference::PressureDifference;
 use repulsion::Repulsion;
 use shifting::Shifting;
 use shock_viscosity::ShockViscosity;
@@ -186,6 +188,7 @@ terms!(
     Drift<T>,
     DriftStress,
     PressureEvolution<T>,
+    PressureDifference<T>,
     WeightedPressureGradient<T>,
     WeightedViscosity<T>,
 );

@@ -1,0 +1,50 @@
+//! Pressure gradient made of differences.
+
+use finegrain_framework::Real;
+
+use super::{Term, Work};
+use crate::neighbourhood::{Neighbours, Particle};
+use crate::quantity::{Quantity, Values};
+
+/// `-1 / rho_i sum_j V_j (p_j - p_i) grad_i W_ij`, m/s^2 (Monaghan 1992, section 3.1).
+///
+/// Nothing where the pressure is the same everywhere, however particles lie, which the symmetric
+/// forms are not; but what a particle gets its neighbour does not lose: momentum is not conserved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PressureDifference<T> {
+    pub mass: T,
+}
+
+impl<T: Real> Term<T> for PressureDifference<T> {
+    fn reads(&self, _: usize) -> Vec<Quantity> {
+        vec![Quantity::Volume, Quantity::Pressure]
+    }
+
+    fn writes(&self, dims: usize) -> Vec<Quantity> {
+        Quantity::vector(Quantity::Acceleration, dims).collect()
+    }
+
+    #[inline(always)]
+    fn add<const D: usize>(
+        &self,
+        i: &Particle<T, D>,
+        near: &Neighbours<T, D>,
+        work: &mut Work<T>,
+        sums: &mut Values<T>,
+    ) {
+        let factor = near.gradient_factor();
+        let [weight, _] = work.lanes(factor.len());
+        let (own, pressure) = (i[Quantity::Pressure], near.values(Quantity::Pressure));
+        let volume = near.values(Quantity::Volume);
+        let lanes = weight.iter_mut().zip(factor).zip(volume).zip(pressure);
+        for (((weight, &factor), &volume), &p) in lanes {
+            *weight = factor * volume * (p - own);
+        }
+        let mut acceleration = near.sum_differences(weight);
+        let density = self.mass / i[Quantity::Volume];
+        for a in 0..D {
+            acceleration[a] /= -density;
+        }
+        sums.add(Quantity::Acceleration, acceleration);
+    }
+}
