@@ -177,15 +177,17 @@ mod tests {
     fn one_sweep_where_nothing_depends_on_rates_and_two_where_stress_does() {
         let mass = 1.0;
         let inviscid = vec![
-            Piece::Term(Continuity { mass }.into()),
+            Piece::Term(Continuity { mass, is_corrected: false }.into()),
             Piece::Term(PressureGradient { mass }.into()),
             state_equation(),
         ];
         assert_eq!(names(&slots(inviscid, 2)), [vec!["update"], vec!["continuity", "pressure"]]);
+        let strain_rate =
+            StrainRate { mass, dynamic_viscosity: 1.0, in_bodies: None, is_corrected: false };
         let viscous = vec![
             Piece::Term(StressDivergence { mass }.into()),
-            Piece::Term(Continuity { mass }.into()),
-            Piece::Term(StrainRate { mass, dynamic_viscosity: 1.0, in_bodies: None }.into()),
+            Piece::Term(Continuity { mass, is_corrected: false }.into()),
+            Piece::Term(strain_rate.into()),
             Piece::Term(PressureGradient { mass }.into()),
             state_equation(),
         ];

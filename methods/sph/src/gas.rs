@@ -10,7 +10,7 @@ use crate::fields::Fields;
 use crate::kernel::adaptive::AdaptiveKernel;
 use crate::physics::{Fluid, Physics};
 use crate::quantity::Quantity;
-use crate::scheme::Scheme;
+use crate::scheme::{Gradient, Scheme};
 use crate::state_equation::StateEquation;
 use crate::term::conductivity::Conductivity;
 use crate::term::gas_pressure::GasPressure;
@@ -173,6 +173,8 @@ pub(crate) fn check(fluid: &Fluid, physics: &Physics, scheme: &Scheme) -> Result
     let follows = scheme.smoothing.is_adaptive();
     requires(follows, "an ideal gas", "a smoothing length that follows the density")?;
     requires(physics.energy, "an ideal gas", "the energy equation")?;
+    let is_plain = scheme.gradient == Gradient::Kernel;
+    requires(is_plain, "an ideal gas", "gradient = kernel")?;
     requires(physics.viscosity.is_none(), "an ideal gas", "no laminar viscosity")?;
     requires(physics.bodies.is_empty(), "an ideal gas", "space without bodies")
 }

@@ -93,7 +93,7 @@ pub use kernel::{Kernel, SmoothingFunction};
 pub use model::Sph;
 pub use packing::{Lattice, Packing};
 pub use physics::{Fluid, Physics, Viscosity};
-pub use scheme::{Density, Edac, PressureForm, Scheme};
+pub use scheme::{Density, Edac, Gradient, PressureForm, Scheme};
 pub use smoothing::Smoothing;
 pub use stabilisation::{ArtificialViscosity, DensityDiffusion, DiffusionForm, Stabilisation};
 pub use start::Start;

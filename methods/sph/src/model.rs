@@ -7,6 +7,7 @@ use finegrain_framework::space::cells::CellsOptions;
 use finegrain_framework::{Columns, Evolution, Handle, Model, Pacing, Real, Stage};
 
 use crate::body::{Body, Slip, WallPressure, WallVelocity};
+use crate::correction::Correction;
 use crate::dimension::Dimension;
 use crate::error::SphError;
 use crate::evaluation::{Piece, slots};
@@ -18,7 +19,7 @@ use crate::kernel::adaptive::{AdaptiveKernel, Kernels};
 use crate::pacing::{Sort, TimeStepControl};
 use crate::physics::{Fluid, Physics, Viscosity};
 use crate::quantity::Quantity;
-use crate::scheme::{Density, PressureForm, Scheme};
+use crate::scheme::{Density, Gradient, PressureForm, Scheme};
 use crate::smoothing::Smoothing;
 use crate::start::Start;
 use crate::state_equation::{StateEquation, Thermodynamics};
@@ -70,6 +71,7 @@ impl<T: Real> Sph<T> {
             let (choice, others) = ("scheme.edac", "physics.energy = false");
             return Err(SphError::Choice { choice, others });
         }
+        check_gradient(physics, scheme)?;
         // Built by functions that are not generic, so that the loops of all terms are compiled once,
         // with this crate, and not again in every program that uses it.
         let sph: Box<dyn Any> = if TypeId::of::<T>() == TypeId::of::<f32>() {
@@ -79,6 +81,21 @@ impl<T: Real> Sph<T> {
         };
         Ok(*sph.downcast().expect("a real number is f32 or f64"))
     }
+}
+
+/// Refuses a correction of gradients that there are none of.
+fn check_gradient(physics: &Physics, scheme: &Scheme) -> Result<(), SphError> {
+    let has_gradients = scheme.density == Density::Continuity
+        || scheme.edac.is_some()
+        || scheme.pressure_form == PressureForm::Antisymmetric
+        || physics.viscosity == Some(Viscosity::StrainRate);
+    if scheme.gradient == Gradient::Corrected && !has_gradients {
+        let choice = "gradient = corrected";
+        let others = "density = continuity, edac, pressure_form = antisymmetric or a viscosity of \
+                      strain rates";
+        return Err(SphError::Choice { choice, others });
+    }
+    Ok(())
 }
 
 #[inline(never)]
@@ -163,15 +180,18 @@ fn pieces<T: Real>(
     physics: &Physics,
     scheme: &Scheme,
     kernel: &Kernel<T>,
+    spacing: f64,
     mass: f64,
+    dims: usize,
 ) -> Vec<Piece<T>> {
     let viscosity = physics.viscosity.map_or(0.0, |_| fluid.density * fluid.kinematic_viscosity);
     let (mass, dynamic_viscosity) = (T::of(mass), T::of(viscosity));
     let in_bodies = velocity_in_bodies(physics, scheme);
     let h = kernel.smoothing_length();
     let eta_squared = T::of(0.01) * h * h;
+    let is_corrected = scheme.gradient == Gradient::Corrected;
     let mut terms: Vec<AnyTerm<T>> = vec![match scheme.density {
-        Density::Continuity => Continuity { mass }.into(),
+        Density::Continuity => Continuity { mass, is_corrected }.into(),
         Density::Summation => NumberDensity.into(),
     }];
     if scheme.transport > 0.0 {
@@ -188,6 +208,7 @@ fn pieces<T: Real>(
                 sound_speed_squared: T::of(fluid.sound_speed * fluid.sound_speed),
                 diffusivity: T::of(edac.diffusion * fluid.sound_speed / 8.0) * h,
                 drifts: scheme.transport > 0.0,
+                is_corrected,
             }
             .into(),
         );
@@ -195,12 +216,12 @@ fn pieces<T: Real>(
     if physics.viscosity == Some(Viscosity::StrainRate)
         || (physics.energy && physics.viscosity.is_some())
     {
-        terms.push(StrainRate { mass, dynamic_viscosity, in_bodies }.into());
+        terms.push(StrainRate { mass, dynamic_viscosity, in_bodies, is_corrected }.into());
     }
     terms.push(match scheme.pressure_form {
         PressureForm::Symmetric => PressureGradient { mass }.into(),
         PressureForm::DensityWeighted => WeightedPressureGradient { mass }.into(),
-        PressureForm::Antisymmetric => PressureDifference { mass }.into(),
+        PressureForm::Antisymmetric => PressureDifference { mass, is_corrected }.into(),
     });
     match physics.viscosity {
         Some(Viscosity::StrainRate) => terms.push(StressDivergence { mass }.into()),
@@ -220,11 +241,14 @@ fn pieces<T: Real>(
     if physics.energy {
         terms.push(Energy { mass, dynamic_viscosity }.into());
     }
+    terms.extend(scheme.stabilisation.terms(fluid, physics, kernel, spacing, mass));
     let mut pressures: Vec<_> = terms.iter().flat_map(|term| term.reads(0)).collect();
     pressures.retain(|p| matches!(p, Quantity::Pressure | Quantity::PressureTerm));
     let state_equation = Thermodynamics::piece(fluid, scheme, mass, &pressures);
     let of_bodies = pieces_of_bodies(fluid, physics, scheme, kernel, mass, &pressures);
-    terms.into_iter().map(Piece::Term).chain([state_equation]).chain(of_bodies).collect()
+    let correction = Correction::pieces(dims, &terms);
+    let pieces = terms.into_iter().map(Piece::Term).chain(correction);
+    pieces.chain([state_equation]).chain(of_bodies).collect()
 }
 
 fn build<T: Real, const D: usize>(
@@ -246,15 +270,7 @@ fn build<T: Real, const D: usize>(
         }
         _ => {
             let kernel = Kernel::new(scheme.kernel, dimension, T::of(smoothing_length));
-            let mut pieces = pieces::<T>(fluid, physics, scheme, &kernel, particle_mass);
-            pieces.extend(scheme.stabilisation.pieces(
-                fluid,
-                physics,
-                &kernel,
-                start.spacing,
-                particle_mass,
-                D,
-            ));
+            let pieces = pieces(fluid, physics, scheme, &kernel, start.spacing, particle_mass, D);
             (Kernels::Uniform(kernel), pieces)
         }
     };

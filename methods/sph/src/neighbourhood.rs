@@ -8,7 +8,7 @@ use finegrain_framework::lanes::{Found, RECORD};
 use crate::candidates::{ABSENT, Candidates, Gathered};
 use crate::kernel::Kernel;
 use crate::kernel::adaptive::Kernels;
-use crate::quantity::{Quantity, Values};
+use crate::quantity::{Quantity, Values, component};
 use crate::wall::{Extrapolation, VelocityInBodies};
 
 /// The particle whose rates are wanted.
@@ -31,6 +31,19 @@ impl<T: Real, const D: usize> Particle<T, D> {
     #[inline(always)]
     pub fn is_wall(&self) -> bool {
         self[Quantity::WallDepth] > T::zero()
+    }
+
+    /// A sum over kernel gradients with the correction of Bonet & Lok (1999); only for terms that
+    /// read it.
+    #[inline(always)]
+    pub fn corrected(&self, sum: [T; D]) -> [T; D] {
+        let mut corrected = [T::zero(); D];
+        for a in 0..D {
+            for b in 0..D {
+                corrected[a] += self[Quantity::Correction(component(a, b))] * sum[b];
+            }
+        }
+        corrected
     }
 }
 
@@ -221,6 +234,22 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
             let (v, dx) = (self.values(Quantity::Velocity(a)), self.difference(a));
             for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
                 *jump = (own - v).mul_add(dx, *jump);
+            }
+        }
+    }
+
+    /// Writes `(v_i - v_j) . L_i (x_i - x_j)` with the correction `L_i` of the kernel gradient; only
+    /// for terms that read it.
+    #[inline(always)]
+    pub fn corrected_velocity_jump(&self, i: &Particle<T, D>, jump: &mut [T]) {
+        jump.fill(T::zero());
+        for a in 0..D {
+            let (own, v) = (i[Quantity::Velocity(a)], self.values(Quantity::Velocity(a)));
+            for b in 0..D {
+                let correction = i[Quantity::Correction(component(a, b))];
+                for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(self.difference(b)) {
+                    *jump = (correction * (own - v)).mul_add(dx, *jump);
+                }
             }
         }
     }

@@ -30,6 +30,9 @@ pub struct Scheme {
     pub edac: Option<Edac>,
     /// How the pressure of two particles makes a force.
     pub pressure_form: PressureForm,
+    /// The gradient of the kernel in differences: in velocity gradients, and in the antisymmetric
+    /// form of the pressure gradient.
+    pub gradient: Gradient,
     /// Drift of the particles towards an even distribution, in units of that of Adami, Hu & Adams
     /// (2013) with a background pressure of `rho c^2` and a time step of `0.25 h / c`; none if 0.
     /// Goes only with density as a sum.
@@ -58,6 +61,7 @@ impl Default for Scheme {
             density: Density::Continuity,
             edac: None,
             pressure_form: PressureForm::Symmetric,
+            gradient: Gradient::Kernel,
             transport: 0.0,
             wall_pressure: WallPressure::Evolved,
             wall_velocity: WallVelocity::Linear,
@@ -128,4 +132,17 @@ pub enum PressureForm {
     DensityWeighted,
     /// `p_j - p_i`: exactly nothing where the pressure is constant, but momentum is not conserved.
     Antisymmetric,
+}
+
+/// The gradient of the kernel in differences.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Gradient {
+    /// As it is.
+    #[default]
+    Kernel,
+    /// Times the inverse of the moment matrix of the neighbours (Bonet & Lok 1999): gradients of
+    /// linear fields are exact, however particles lie, beside free surfaces, too. One more sweep
+    /// over the neighbours.
+    Corrected,
 }

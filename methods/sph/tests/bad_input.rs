@@ -4,9 +4,9 @@ use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Settings, Simulation};
 use finegrain_sph::{
-    ArtificialViscosity, Body, DensityDiffusion, DiffusionForm, Edac, Fluid, Packing, Physics,
-    PressureForm, Scheme, ShockCapturing, Smoothing, Sph, Stabilisation, Start, StateEquation,
-    Viscosity,
+    ArtificialViscosity, Body, Density, DensityDiffusion, DiffusionForm, Edac, Fluid, Gradient,
+    Packing, Physics, PressureForm, Scheme, ShockCapturing, Smoothing, Sph, Stabilisation, Start,
+    StateEquation, Viscosity,
 };
 
 fn start() -> Start {
@@ -48,6 +48,8 @@ fn numbers_outside_their_range() {
     assert!(of_scheme(Scheme { transport: -1.0, ..scheme }).contains("transport is -1"));
     let said = of_scheme(Scheme { transport: 1.0, ..scheme });
     assert!(said.contains("transport above 0 goes only with density = summation"), "{said}");
+    let plain = Scheme { gradient: Gradient::Corrected, density: Density::Summation, ..scheme };
+    assert!(of_scheme(plain).contains("gradient = corrected goes only with"));
     let stabilisation = Stabilisation { tensile_control: true, ..Stabilisation::NONE };
     let pressure_form = PressureForm::Antisymmetric;
     let said = of_scheme(Scheme { stabilisation, pressure_form, ..scheme });
@@ -143,6 +145,8 @@ fn choices_that_do_not_make_a_gas() {
         "goes only with a smoothing length that follows the density",
     );
     said(&gas, &Physics::default(), &scheme, "goes only with the energy equation");
+    let corrected = Scheme { gradient: Gradient::Corrected, ..scheme };
+    said(&gas, &physics, &corrected, "goes only with gradient = kernel");
     let viscous = Physics { viscosity: Some(Viscosity::Morris), ..physics.clone() };
     said(&gas, &viscous, &scheme, "goes only with no laminar viscosity");
     let shocks = ShockCapturing { viscosity: -1.0, ..ShockCapturing::default() };

@@ -8,7 +8,7 @@ use finegrain_framework::shape::Shape;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Columns, Real};
 use finegrain_sph::{
-    Fluid, Packing, Physics, Scheme, ShockCapturing, Sph, Start, StateEquation, Viscosity,
+    Fluid, Gradient, Packing, Physics, Scheme, ShockCapturing, Sph, Start, StateEquation, Viscosity,
 };
 
 /// Bytes a particle in all columns, and their names.
@@ -18,7 +18,7 @@ fn cost(columns: &Columns) -> (usize, BTreeSet<String>) {
 }
 
 /// Of a periodic box in 2-D.
-fn cost_of<T: Real>(physics: &Physics) -> (usize, BTreeSet<String>) {
+fn cost_of<T: Real>(physics: &Physics, scheme: &Scheme) -> (usize, BTreeSet<String>) {
     let lattice = Packing::Square.fit([1.0; 3], 0.1).unwrap();
     let start = Start {
         region: Region { lower: vec![0.0; 2], upper: vec![1.0; 2], periodic: vec![true; 2] },
@@ -33,26 +33,40 @@ fn cost_of<T: Real>(physics: &Physics) -> (usize, BTreeSet<String>) {
         kinematic_viscosity: 0.1,
         state_equation: StateEquation::Linear { background: 0.0 },
     };
-    let sph = Sph::<T>::new(&start, &fluid, physics, &Scheme::default()).unwrap();
+    let sph = Sph::<T>::new(&start, &fluid, physics, scheme).unwrap();
     cost(&sph.model.columns)
 }
 
 /// Checks that `physics` adds the columns `names`, to what there is without.
 fn adds(physics: &Physics, names: &[&str]) {
-    let (plain, known) = cost_of::<f64>(&Physics::default());
-    let (bytes, all) = cost_of::<f64>(physics);
+    adds_with(physics, &Scheme::default(), names);
+}
+
+/// Checks that `physics` and `scheme` add the columns `names`, to what there is without.
+fn adds_with(physics: &Physics, scheme: &Scheme, names: &[&str]) {
+    let (plain, known) = cost_of::<f64>(&Physics::default(), &Scheme::default());
+    let (bytes, all) = cost_of::<f64>(physics, scheme);
     let new: Vec<_> = all.difference(&known).map(String::as_str).collect();
     assert_eq!(new, names);
     assert_eq!(bytes - plain, 8 * names.len());
-    let (bytes, all) = (cost_of::<f32>(physics).0, 4 * all.len());
+    let (bytes, all) = (cost_of::<f32>(physics, scheme).0, 4 * all.len());
     assert_eq!(bytes, all, "single precision is half of it but for the identity");
 }
 
 #[test]
 fn nothing_more_than_mass_and_momentum_by_default() {
-    let (bytes, names) = cost_of::<f64>(&Physics::default());
-    let nothing =
-        ["energy", "stress", "wall", "sound_speed", "smoothing_length", "grad_h", "signal"];
+    let (bytes, names) = cost_of::<f64>(&Physics::default(), &Scheme::default());
+    let nothing = [
+        "energy",
+        "stress",
+        "wall",
+        "sound_speed",
+        "smoothing_length",
+        "grad_h",
+        "signal",
+        "moment",
+        "correction",
+    ];
     for name in nothing {
         assert!(!names.iter().any(|column| column.contains(name)), "{name}");
     }
@@ -73,6 +87,14 @@ fn viscosity() {
     adds(&of(Viscosity::Morris), &[]);
     adds(&of(Viscosity::Monaghan), &[]);
     adds(&of(Viscosity::StrainRate), &["stress_term_0", "stress_term_1", "stress_term_2"]);
+}
+
+#[test]
+fn corrected_gradient() {
+    let scheme = Scheme { gradient: Gradient::Corrected, ..Scheme::default() };
+    let columns =
+        ["correction_0", "correction_1", "correction_2", "moment_0", "moment_1", "moment_2"];
+    adds_with(&Physics::default(), &scheme, &columns);
 }
 
 #[test]

@@ -41,8 +41,8 @@ use finegrain_framework::run::{Dump, Every, Run, Summary, Until};
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Integrator, Real, Simulation, State};
 use finegrain_sph::{
-    Density, Edac, Fields, PressureForm, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity,
-    WallPressure, WallVelocity, measure,
+    Density, Edac, Fields, Gradient, PressureForm, Scheme, SmoothingFunction, Sph, StateEquation,
+    Viscosity, WallPressure, WallVelocity, measure,
 };
 
 use super::parameter::{Parameter, Parameters};
@@ -51,7 +51,7 @@ use super::{Orders, Prepared, Report, SceneError};
 use crate::figure::{Axis, Field};
 
 /// Parameters of the discretisation that scenes of all liquids share.
-const LIQUID_PARAMETERS: [Parameter; 5] = [
+const LIQUID_PARAMETERS: [Parameter; 7] = [
     Parameter::choice(
         "kernel",
         &[
@@ -73,6 +73,18 @@ const LIQUID_PARAMETERS: [Parameter; 5] = [
     ),
     Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
     Parameter::number("mach", 0.1, [1e-4, 0.5], "", "largest speed over sound speed, about"),
+    Parameter::choice(
+        "pressure_form",
+        &["symmetric", "density-weighted", "antisymmetric"],
+        "eq. I.2 of Holmes et al. (2011), Adami et al. (2012), or differences, which do not conserve \
+         momentum",
+    ),
+    Parameter::choice(
+        "gradient",
+        &["kernel", "corrected"],
+        "in velocity gradients and the antisymmetric pressure gradient: of the kernel, or exact for \
+         linear fields (Bonet & Lok 1999)",
+    ),
 ];
 
 /// What the parameters of all liquids say about the discretisation.
@@ -82,12 +94,21 @@ fn liquid_scheme(parameters: &Parameters) -> Scheme {
         smoothing_ratio: parameters.number("smoothing_ratio"),
         integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
         courant_number: parameters.number("courant"),
+        pressure_form: match parameters.choice("pressure_form") {
+            "density-weighted" => PressureForm::DensityWeighted,
+            "antisymmetric" => PressureForm::Antisymmetric,
+            _ => PressureForm::Symmetric,
+        },
+        gradient: match parameters.choice("gradient") {
+            "corrected" => Gradient::Corrected,
+            _ => Gradient::Kernel,
+        },
         ..Scheme::default()
     }
 }
 
 /// Further parameters of the discretisation that scenes without a free surface share.
-const PARAMETERS: [Parameter; 7] = [
+const PARAMETERS: [Parameter; 6] = [
     Parameter::choice(
         "viscous_form",
         &["morris", "strain-rate", "adami", "monaghan"],
@@ -103,12 +124,6 @@ const PARAMETERS: [Parameter; 7] = [
         "pressure",
         &["state-equation", "edac"],
         "pressure follows from density, or evolves with diffusion (Ramachandran & Puri 2019)",
-    ),
-    Parameter::choice(
-        "pressure_form",
-        &["symmetric", "density-weighted", "antisymmetric"],
-        "eq. I.2 of Holmes et al. (2011), Adami et al. (2012), or differences, which do not conserve \
-         momentum",
     ),
     Parameter::number(
         "edac_diffusion",
@@ -143,11 +158,6 @@ fn scheme(parameters: &Parameters) -> Scheme {
         },
         edac: (parameters.choice("pressure") == "edac")
             .then(|| Edac { diffusion: parameters.number("edac_diffusion") }),
-        pressure_form: match parameters.choice("pressure_form") {
-            "density-weighted" => PressureForm::DensityWeighted,
-            "antisymmetric" => PressureForm::Antisymmetric,
-            _ => PressureForm::Symmetric,
-        },
         transport: parameters.number("transport"),
         ..liquid_scheme(parameters)
     }

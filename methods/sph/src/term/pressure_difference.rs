@@ -10,14 +10,19 @@ use crate::quantity::{Quantity, Values};
 ///
 /// Nothing where the pressure is the same everywhere, however particles lie, which the symmetric
 /// forms are not; but what a particle gets its neighbour does not lose: momentum is not conserved.
+/// With the corrected gradient it is exact for a pressure that varies linearly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PressureDifference<T> {
     pub mass: T,
+    /// Whether with the corrected gradient.
+    pub is_corrected: bool,
 }
 
 impl<T: Real> Term<T> for PressureDifference<T> {
-    fn reads(&self, _: usize) -> Vec<Quantity> {
-        vec![Quantity::Volume, Quantity::Pressure]
+    fn reads(&self, dims: usize) -> Vec<Quantity> {
+        let correction = Quantity::symmetric(Quantity::Correction, dims);
+        let correction = correction.filter(|_| self.is_corrected);
+        correction.chain([Quantity::Volume, Quantity::Pressure]).collect()
     }
 
     fn writes(&self, dims: usize) -> Vec<Quantity> {
@@ -41,6 +46,9 @@ impl<T: Real> Term<T> for PressureDifference<T> {
             *weight = factor * volume * (p - own);
         }
         let mut acceleration = near.sum_differences(weight);
+        if self.is_corrected {
+            acceleration = i.corrected(acceleration);
+        }
         let density = self.mass / i[Quantity::Volume];
         for a in 0..D {
             acceleration[a] /= -density;
