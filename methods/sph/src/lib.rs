@@ -15,6 +15,7 @@
 //! | [`kernel`] | smoothing functions |
 //! | [`body`], `wall.rs`, `wall_state.rs` | bodies, and how the fluid feels them |
 //! | [`packing`] | lattices that are exactly periodic |
+//! | `start_check.rs`, `initial_state.rs` | refuse a start that makes no sense |
 //! | [`physics`], [`scheme`], [`start`] | what a scene models, how, and from which particles |
 //! | [`model`] | builds a framework model of it |
 //!
@@ -71,13 +72,16 @@ pub mod start;
 pub mod state_equation;
 
 mod adaptive_density;
+mod bins;
 mod candidates;
 mod correction;
 mod evaluation;
 mod gas_pacing;
+mod initial_state;
 mod neighbourhood;
 mod pacing;
 mod quantity;
+mod start_check;
 mod sweep;
 mod term;
 mod wall;

@@ -14,6 +14,7 @@ use crate::evaluation::{Piece, slots};
 use crate::fields::Fields;
 use crate::gas;
 use crate::gas_pacing::GasPacing;
+use crate::initial_state::InitialState;
 use crate::kernel::Kernel;
 use crate::kernel::adaptive::{AdaptiveKernel, Kernels};
 use crate::pacing::{Sort, TimeStepControl};
@@ -22,6 +23,7 @@ use crate::quantity::Quantity;
 use crate::scheme::{Density, Gradient, PressureForm, Scheme};
 use crate::smoothing::Smoothing;
 use crate::start::Start;
+use crate::start_check;
 use crate::state_equation::{StateEquation, Thermodynamics};
 use crate::sweep::Sweep;
 use crate::term::continuity::Continuity;
@@ -289,6 +291,9 @@ fn build<T: Real, const D: usize>(
         block_points: 64,
     };
     let domain = Cells::new(&mut columns, &fields.position, options)?;
+    start_check::check_periods(start, range)?;
+    start_check::check_overlap(start)?;
+    start_check::check_bodies(start, &walls, range)?;
 
     let friction = match (physics.slip, scheme.wall_velocity) {
         (Slip::Free, _) => Friction::None,
@@ -368,7 +373,7 @@ fn build<T: Real, const D: usize>(
         domain,
         columns,
         plan,
-        whole: vec![Box::new(Sort)],
+        whole: vec![Box::new(InitialState { fields: fields.clone() }), Box::new(Sort)],
         pacing,
     };
     Ok(Sph { model, fields, particle_mass })
