@@ -112,6 +112,7 @@ fn a_restarted_run_ends_with_the_bits_of_the_uninterrupted_one() {
         let moving = ["--set", "background_pressure=0.1", "--set", "courant=0.5"];
         restarts_with_the_same_bits(&small(&[&["--set", &integrator], &moving[..]].concat()));
     }
+    restarts_with_the_same_bits(&small(&["--precision", "mixed"]));
 }
 
 #[test]

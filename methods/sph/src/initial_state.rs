@@ -8,16 +8,16 @@ use crate::fields::Fields;
 
 /// Refuses fields that are not finite, and densities that are not positive, before the first step.
 /// Positions are looked at where they are sorted.
-pub(crate) struct InitialState<T> {
-    pub fields: Fields<T>,
+pub(crate) struct InitialState<T, P> {
+    pub fields: Fields<T, P>,
 }
 
-impl<T: Real> WholeStage<Cells<T>> for InitialState<T> {
+impl<T: Real, P: Real> WholeStage<Cells<P>> for InitialState<T, P> {
     fn name(&self) -> &str {
         "check of the initial state"
     }
 
-    fn run(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<(), Fault> {
+    fn run(&mut self, whole: &mut Whole<'_, Cells<P>>) -> Result<(), Fault> {
         if whole.step > 0 {
             return Ok(());
         }

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | `term/` | one sum over neighbours each, reading like its equation |
 //! | `evaluation.rs` | the order of the terms and updates, from what they read and write |
-//! | `sweep.rs` | a rate stage: gathers the neighbours of a particle once and runs the terms over them |
+//! | `sweep.rs`, `sums.rs` | a rate stage: gathers what particles see once, and runs the terms over it |
 //! | `candidates.rs`, `neighbourhood.rs` | candidates of a cell, in records; neighbours of a particle, in lanes |
 //! | [`kernel`] | smoothing functions |
 //! | [`body`], `wall.rs`, `wall_state.rs` | bodies, and how the fluid feels them |
@@ -82,6 +82,7 @@ mod neighbourhood;
 mod pacing;
 mod quantity;
 mod start_check;
+mod sums;
 mod sweep;
 mod term;
 mod wall;

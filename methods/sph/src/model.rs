@@ -44,16 +44,20 @@ use crate::wall::{Friction, NoSlip, VelocityInBodies, Walls};
 use crate::wall_state::WallState;
 
 /// A model and the handles of its fields.
-pub struct Sph<T: Real> {
+///
+/// Positions may be more precise than the rest: `Sph<f32, f64>`, mixed precision, keeps positions and
+/// their motion in `f64`, and computes what particles do to each other in `f32` from positions
+/// relative to the cell that they are in.
+pub struct Sph<T: Real, P: Real = T> {
     /// To be run by the framework.
-    pub model: Model<Cells<T>>,
+    pub model: Model<Cells<P>>,
     /// Its fields.
-    pub fields: Fields<T>,
+    pub fields: Fields<T, P>,
     /// Mass of every particle, kg (per m in 2-D).
     pub particle_mass: f64,
 }
 
-impl<T: Real> Sph<T> {
+impl<T: Real, P: Real> Sph<T, P> {
     /// Builds a model in as many dimensions as the region has.
     ///
     /// # Errors
@@ -74,12 +78,15 @@ impl<T: Real> Sph<T> {
             return Err(SphError::Choice { choice, others });
         }
         check_gradient(physics, scheme)?;
+        const { assert!(size_of::<P>() >= size_of::<T>(), "positions are less precise than the rest") };
         // Built by functions that are not generic, so that the loops of all terms are compiled once,
         // with this crate, and not again in every program that uses it.
-        let sph: Box<dyn Any> = if TypeId::of::<T>() == TypeId::of::<f32>() {
-            Box::new(build_f32(start, fluid, physics, scheme)?)
-        } else {
+        let sph: Box<dyn Any> = if TypeId::of::<T>() == TypeId::of::<f64>() {
             Box::new(build_f64(start, fluid, physics, scheme)?)
+        } else if TypeId::of::<P>() == TypeId::of::<f64>() {
+            Box::new(build_mixed(start, fluid, physics, scheme)?)
+        } else {
+            Box::new(build_f32(start, fluid, physics, scheme)?)
         };
         Ok(*sph.downcast().expect("a real number is f32 or f64"))
     }
@@ -120,16 +127,26 @@ fn build_f64(
     build_in_its_dimension(start, fluid, physics, scheme)
 }
 
-fn build_in_its_dimension<T: Real>(
+#[inline(never)]
+fn build_mixed(
     start: &Start,
     fluid: &Fluid,
     physics: &Physics,
     scheme: &Scheme,
-) -> Result<Sph<T>, SphError> {
+) -> Result<Sph<f32, f64>, SphError> {
+    build_in_its_dimension(start, fluid, physics, scheme)
+}
+
+fn build_in_its_dimension<T: Real, P: Real>(
+    start: &Start,
+    fluid: &Fluid,
+    physics: &Physics,
+    scheme: &Scheme,
+) -> Result<Sph<T, P>, SphError> {
     match start.region.lower.len() {
-        1 => build::<T, 1>(start, fluid, physics, scheme, Dimension::One),
-        2 => build::<T, 2>(start, fluid, physics, scheme, Dimension::Two),
-        _ => build::<T, 3>(start, fluid, physics, scheme, Dimension::Three),
+        1 => build::<T, P, 1>(start, fluid, physics, scheme, Dimension::One),
+        2 => build::<T, P, 2>(start, fluid, physics, scheme, Dimension::Two),
+        _ => build::<T, P, 3>(start, fluid, physics, scheme, Dimension::Three),
     }
 }
 
@@ -148,14 +165,14 @@ fn velocity_in_bodies(physics: &Physics, scheme: &Scheme) -> Option<VelocityInBo
 }
 
 /// The pieces that bodies need.
-fn pieces_of_bodies<T: Real>(
+fn pieces_of_bodies<T: Real, P: Real>(
     fluid: &Fluid,
     physics: &Physics,
     scheme: &Scheme,
     kernel: &Kernel<T>,
     mass: T,
     pressures: &[Quantity],
-) -> Vec<Piece<T>> {
+) -> Vec<Piece<T, P>> {
     let mut pieces = Vec::new();
     // Less than a particle of the fluid at the edge of the support.
     let least_kernel = T::of(1e-6) * kernel.w(T::zero());
@@ -177,7 +194,7 @@ fn pieces_of_bodies<T: Real>(
 }
 
 /// The pieces that `physics` names; terms in the order in which they are added.
-fn pieces<T: Real>(
+fn pieces<T: Real, P: Real>(
     fluid: &Fluid,
     physics: &Physics,
     scheme: &Scheme,
@@ -185,7 +202,7 @@ fn pieces<T: Real>(
     spacing: f64,
     mass: f64,
     dims: usize,
-) -> Vec<Piece<T>> {
+) -> Vec<Piece<T, P>> {
     let viscosity = physics.viscosity.map_or(0.0, |_| fluid.density * fluid.kinematic_viscosity);
     let (mass, dynamic_viscosity) = (T::of(mass), T::of(viscosity));
     let in_bodies = velocity_in_bodies(physics, scheme);
@@ -253,13 +270,13 @@ fn pieces<T: Real>(
     pieces.chain([state_equation]).chain(of_bodies).collect()
 }
 
-fn build<T: Real, const D: usize>(
+fn build<T: Real, P: Real, const D: usize>(
     start: &Start,
     fluid: &Fluid,
     physics: &Physics,
     scheme: &Scheme,
     dimension: Dimension,
-) -> Result<Sph<T>, SphError> {
+) -> Result<Sph<T, P>, SphError> {
     let smoothing_length = scheme.smoothing_ratio * start.spacing;
     let particle_mass = fluid.density * start.particle_volume;
     let (kernels, pieces) = match (scheme.smoothing, fluid.state_equation) {
@@ -282,7 +299,7 @@ fn build<T: Real, const D: usize>(
     let mut columns = Columns::new(start.positions.len());
     let has_bodies = !physics.bodies.is_empty();
     let uses: Vec<_> = pieces.iter().flat_map(|p| [p.reads(D), p.writes(D)].concat()).collect();
-    let fields = Fields::<T>::declare(&mut columns, D, has_bodies, &uses);
+    let fields = Fields::<T, P>::declare(&mut columns, D, has_bodies, &uses);
     start.fill(&mut columns, &fields, fluid, &walls);
     let options = CellsOptions {
         region: start.region.clone(),
@@ -316,7 +333,7 @@ fn build<T: Real, const D: usize>(
             }
         }
         if !terms.is_empty() {
-            evaluation.push(Stage::rate(Sweep::<T, D>::new(
+            evaluation.push(Stage::rate(Sweep::<T, P, D>::new(
                 kernels,
                 terms,
                 &fields,
@@ -353,7 +370,7 @@ fn build<T: Real, const D: usize>(
     }
     let plan = scheme.integrator.plan(&mut columns, &evolution, &evaluation);
     let magnitude = physics.body_acceleration.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let pacing: Box<dyn Pacing<Cells<T>>> = if scheme.smoothing.is_adaptive() {
+    let pacing: Box<dyn Pacing<Cells<P>>> = if scheme.smoothing.is_adaptive() {
         let approach = physics.shock_capturing.map_or(0.0, |shocks| shocks.approach);
         Box::new(GasPacing::new(&fields, fluid, scheme, particle_mass, approach, magnitude))
     } else {

@@ -123,7 +123,7 @@ pub(crate) enum Friction<T> {
 impl<T: Real> Friction<T> {
     /// How a fluid particle at `position` sees the velocities in bodies.
     #[inline(always)]
-    pub fn at<const D: usize>(&self, position: [T; D]) -> Extrapolation<T> {
+    pub fn at(&self, position: [f64; 3]) -> Extrapolation<T> {
         match self {
             Self::AsGiven => Extrapolation::none(),
             Self::Linear(no_slip) => no_slip.at(position),
@@ -172,12 +172,8 @@ pub(crate) struct NoSlip<T> {
 
 impl<T: Real> NoSlip<T> {
     /// How a fluid particle at `position` sees the velocities in bodies.
-    pub fn at<const D: usize>(&self, position: [T; D]) -> Extrapolation<T> {
-        let mut x = [0.0; 3];
-        for (x, position) in x.iter_mut().zip(position) {
-            *x = position.as_f64();
-        }
-        let distance = T::of(self.walls.signed_distance(x)).max(self.least_distance);
+    pub fn at(&self, position: [f64; 3]) -> Extrapolation<T> {
+        let distance = T::of(self.walls.signed_distance(position)).max(self.least_distance);
         Extrapolation { most: self.most, per_depth: T::one() / distance }
     }
 }

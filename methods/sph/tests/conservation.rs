@@ -20,7 +20,7 @@ fn momentum_to_round_off() {
     ] {
         for dims in [2, 3] {
             let (mut simulation, fields, mass) =
-                flow::flow::<f64>(dims, viscosity, &scheme, false, Settings::default());
+                flow::flow::<f64, f64>(dims, viscosity, &scheme, false, Settings::default());
             simulation.begin().unwrap();
             let before = measure::totals(&mut simulation.whole(), &fields, mass);
             // What could be lost: every particle's momentum, once.

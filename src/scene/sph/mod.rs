@@ -1,7 +1,7 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
-/// Defines `prepare`, which makes a scene ready by a function `build::<T>(parameters, precision)`, in
-/// the scalar type asked for.
+/// Defines `prepare`, which makes a scene ready by a function `build::<T, P>(parameters, precision)`,
+/// in the scalar types asked for: `P` for positions and `T` for all else.
 macro_rules! prepare_with {
     ($build:ident) => {
         /// Prepares the scene.
@@ -11,8 +11,9 @@ macro_rules! prepare_with {
         ) -> Result<Box<dyn $crate::scene::Prepared>, $crate::scene::SceneError> {
             use $crate::scene::Precision;
             Ok(match precision {
-                Precision::F32 => Box::new($build::<f32>(parameters, precision)?),
-                Precision::F64 => Box::new($build::<f64>(parameters, precision)?),
+                Precision::F32 => Box::new($build::<f32, f32>(parameters, precision)?),
+                Precision::F64 => Box::new($build::<f64, f64>(parameters, precision)?),
+                Precision::Mixed => Box::new($build::<f32, f64>(parameters, precision)?),
             })
         }
     };
@@ -244,20 +245,20 @@ fn state_equation(parameters: &Parameters) -> StateEquation {
 }
 
 /// What a scene adds to a run of SPH.
-trait Flow<T: Real> {
+trait Flow<T: Real, P: Real> {
     /// When it ends if nobody says otherwise, s.
     fn end_time(&self) -> f64;
 
     /// Adds monitors and stop criteria.
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>>;
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>>;
 
     /// Draws results from the histories and the final state.
     fn judge(
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         mass: f64,
     );
 
@@ -268,20 +269,20 @@ trait Flow<T: Real> {
     fn spacing(&self) -> f64;
 
     /// The picture of the end: by default of the speed.
-    fn picture(&self, simulation: &Simulation<Cells<T>>, fields: &Fields<T>) -> Picture {
+    fn picture(&self, simulation: &Simulation<Cells<P>>, fields: &Fields<T, P>) -> Picture {
         picture(simulation, fields, self.title(), self.spacing()).into()
     }
 }
 
 /// A scene with its SPH model.
-struct SphScene<T: Real, F> {
-    sph: Sph<T>,
+struct SphScene<T: Real, P: Real, F> {
+    sph: Sph<T, P>,
     flow: F,
     /// What is modelled, for checkpoints.
     description: String,
 }
 
-impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
+impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
     fn points(&self) -> usize {
         self.sph.model.columns.points()
     }
@@ -339,27 +340,28 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
 }
 
 /// Speed in the plane, or in 3-D in a slice through the middle.
-fn picture<T: Real>(
-    simulation: &Simulation<Cells<T>>,
-    fields: &Fields<T>,
+fn picture<T: Real, P: Real>(
+    simulation: &Simulation<Cells<P>>,
+    fields: &Fields<T, P>,
     title: String,
     spacing: f64,
 ) -> Field {
     let columns = simulation.columns();
     let region = simulation.domain().region();
     let value = |handle: State<T>, i: usize| columns.values(handle)[i].as_f64();
+    let place = |handle: State<P>, i: usize| columns.values(handle)[i].as_f64();
     let mut points = Vec::new();
     for i in 0..columns.points() {
         if let Some(&z) = fields.position.get(2) {
             let middle = 0.5 * (region.lower[2] + region.upper[2]);
-            if (value(z, i) - middle).abs() > 0.5 * spacing {
+            if (place(z, i) - middle).abs() > 0.5 * spacing {
                 continue;
             }
         }
         if fields.wall_depth.is_some_and(|depth| value(depth, i) > 0.0) {
             continue;
         }
-        let at = [value(fields.position[0], i), value(fields.position[1], i)];
+        let at = [place(fields.position[0], i), place(fields.position[1], i)];
         let squared: f64 = fields.velocity.iter().map(|&v| value(v, i).powi(2)).sum();
         points.push((at, squared.sqrt()));
     }
