@@ -3,8 +3,9 @@
 //! The formulation of Holmes, Williams & Tilke (2011), composed of terms: conservation of mass
 //! (I.1), momentum (I.2) with pressure and viscosity, and energy (I.3) where a scene asks for it;
 //! an equation of state for weakly compressible flow; gas with shocks and smoothing lengths that
-//! follow its density; bodies filled with particles at rest. What a
-//! scene does not name has no columns and no loops. 1-D, 2-D and 3-D, `f32` and `f64`.
+//! follow its density; bodies filled with particles at rest. What a scene does not name has no
+//! columns and no loops. 1-D, 2-D and 3-D; in `f32`, in `f64`, or mixed, with positions in `f64` and
+//! all else in `f32`.
 //!
 //! | file | holds |
 //! |---|---|
@@ -17,6 +18,7 @@
 //! | [`packing`] | lattices that are exactly periodic |
 //! | `start_check.rs`, `initial_state.rs` | refuse a start that makes no sense |
 //! | [`physics`], [`scheme`], [`start`] | what a scene models, how, and from which particles |
+//! | `liquid.rs`, [`gas`] | the terms and updates that a liquid and a gas are composed of |
 //! | [`model`] | builds a framework model of it |
 //!
 //! # Example
@@ -78,6 +80,7 @@ mod correction;
 mod evaluation;
 mod gas_pacing;
 mod initial_state;
+mod liquid;
 mod neighbourhood;
 mod pacing;
 mod quantity;
