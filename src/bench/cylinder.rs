@@ -52,7 +52,7 @@ pub struct Plan {
 }
 
 /// Builds the paper's model for a width.
-fn model<T: Real>(width: f64, viscosity: Viscosity) -> Result<Sph<T>, SceneError> {
+fn model<T: Real, P: Real>(width: f64, viscosity: Viscosity) -> Result<Sph<T, P>, SceneError> {
     let lattice = Packing::HexagonalClosePacked.fit([SIDE, SIDE, width], SPACING)?;
     let lengths = lattice.lengths();
     let body = Shape::Cylinder {
@@ -83,8 +83,9 @@ fn model<T: Real>(width: f64, viscosity: Viscosity) -> Result<Sph<T>, SceneError
 /// If the model cannot be built or run, or results cannot be written.
 pub fn measure(plan: &Plan, mut say: impl FnMut(&Row)) -> Result<Vec<Row>, SceneError> {
     match plan.precision {
-        Precision::F32 => measure_in::<f32>(plan, &mut say),
-        Precision::F64 => measure_in::<f64>(plan, &mut say),
+        Precision::F32 => measure_in::<f32, f32>(plan, &mut say),
+        Precision::F64 => measure_in::<f64, f64>(plan, &mut say),
+        Precision::Mixed => measure_in::<f32, f64>(plan, &mut say),
     }
 }
 
@@ -95,13 +96,16 @@ const TURN: u64 = 10;
 /// while its own turn's steps go on.
 const WARM_UP: u64 = 5;
 
-fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Row>, SceneError> {
+fn measure_in<T: Real, P: Real>(
+    plan: &Plan,
+    say: &mut impl FnMut(&Row),
+) -> Result<Vec<Row>, SceneError> {
     // Memory before anything else: allocators keep some of what many runs at once have freed.
-    let groups = plan.widths.iter().map(|&width| empty_rows::<T>(plan, width));
+    let groups = plan.widths.iter().map(|&width| empty_rows::<T, P>(plan, width));
     let mut groups = groups.collect::<Result<Vec<_>, _>>()?;
     for (group, &width) in groups.iter_mut().zip(&plan.widths) {
         for _ in 0..plan.repeats {
-            let seconds = sample::<T>(plan, width)?;
+            let seconds = sample::<T, P>(plan, width)?;
             for (row, &own) in group.iter_mut().zip(&seconds) {
                 row.seconds_per_step.push(own.together);
                 if plan.workers[0] == 1 && row.workers > 1 {
@@ -117,11 +121,11 @@ fn measure_in<T: Real>(plan: &Plan, say: &mut impl FnMut(&Row)) -> Result<Vec<Ro
 
 /// A row for each number of workers without samples yet: what does not need a clock, from a run of
 /// the first steps with nothing else in memory.
-fn empty_rows<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> {
+fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> {
     let mut rows = Vec::new();
     for &workers in &plan.workers {
         memory::reset_peak();
-        let mut run = start_run::<T>(plan, width, workers)?;
+        let mut run = start_run::<T, P>(plan, width, workers)?;
         run.run()?;
         // Before anything else is allocated.
         let peak_memory = memory::peak();
@@ -133,7 +137,7 @@ fn empty_rows<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, SceneError> 
             neighbours: measure::mean_neighbours(&mut simulation.whole()),
             sweeps: match plan.viscosity {
                 Viscosity::StrainRate => 2,
-                Viscosity::Morris | Viscosity::Adami => 1,
+                Viscosity::Morris | Viscosity::Adami | Viscosity::Monaghan => 1,
             },
             seconds_per_step: Vec::new(),
             alone: Vec::new(),
@@ -155,12 +159,12 @@ struct Sample {
 }
 
 /// The runs of one number of workers.
-struct Runs<T: Real> {
-    together: Run<Cells<T>>,
-    apart: Vec<Run<Cells<T>>>,
+struct Runs<P: Real> {
+    together: Run<Cells<P>>,
+    apart: Vec<Run<Cells<P>>>,
 }
 
-impl<T: Real> Runs<T> {
+impl<P: Real> Runs<P> {
     fn until(self, until: Until) -> Self {
         let apart = self.apart.into_iter().map(|run| run.until(until)).collect();
         Self { together: self.together.until(until), apart }
@@ -168,13 +172,14 @@ impl<T: Real> Runs<T> {
 }
 
 /// One sample for each number of workers.
-fn sample<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Sample>, SceneError> {
+fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Sample>, SceneError> {
     let mut runs = Vec::new();
     for &workers in &plan.workers {
-        let mut own = Runs { together: start_run::<T>(plan, width, workers)?, apart: Vec::new() };
+        let mut own =
+            Runs { together: start_run::<T, P>(plan, width, workers)?, apart: Vec::new() };
         if plan.workers[0] == 1 && workers > 1 {
             for part in 0..workers {
-                let run = start_run::<T>(plan, width, 1)?;
+                let run = start_run::<T, P>(plan, width, 1)?;
                 own.apart.push(run.out(plan.out.join(format!("apart/{part}"))));
             }
         }
@@ -197,7 +202,7 @@ fn sample<T: Real>(plan: &Plan, width: f64) -> Result<Vec<Sample>, SceneError> {
 }
 
 /// Runs all at the same time; mean wall-clock seconds that one took.
-fn side_by_side<T: Real>(runs: &mut [Run<Cells<T>>]) -> Result<f64, SceneError> {
+fn side_by_side<P: Real>(runs: &mut [Run<Cells<P>>]) -> Result<f64, SceneError> {
     let count = runs.len().max(1) as f64;
     let ended: Vec<_> = thread::scope(|scope| {
         let threads: Vec<_> = runs.iter_mut().map(|run| scope.spawn(|| run.run())).collect();
@@ -221,12 +226,12 @@ pub fn dump_folder(plan: &Plan, workers: usize) -> PathBuf {
 }
 
 /// A run that is ready for its first step, and to end when it is warm.
-fn start_run<T: Real>(
+fn start_run<T: Real, P: Real>(
     plan: &Plan,
     width: f64,
     workers: usize,
-) -> Result<Run<Cells<T>>, SceneError> {
-    let sph = model::<T>(width, plan.viscosity)?;
+) -> Result<Run<Cells<P>>, SceneError> {
+    let sph = model::<T, P>(width, plan.viscosity)?;
     let settings = Settings { schedule: plan.schedule, workers, ..Settings::default() };
     let mut simulation = Simulation::new(sph.model, settings)
         .map_err(|cause| SceneError::Workers { workers, cause })?;

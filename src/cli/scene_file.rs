@@ -39,6 +39,8 @@ pub struct SceneFile {
 pub enum FilePrecision {
     /// 32-bit floats.
     F32,
+    /// Positions in 64 bits, all else in 32.
+    Mixed,
     /// 64-bit floats.
     F64,
 }
@@ -47,6 +49,7 @@ impl From<FilePrecision> for Precision {
     fn from(precision: FilePrecision) -> Self {
         match precision {
             FilePrecision::F32 => Self::F32,
+            FilePrecision::Mixed => Self::Mixed,
             FilePrecision::F64 => Self::F64,
         }
     }

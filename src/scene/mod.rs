@@ -36,6 +36,8 @@ pub use report::Report;
 pub enum Precision {
     /// 32-bit floats.
     F32,
+    /// Positions in 64 bits, all else in 32.
+    Mixed,
     /// 64-bit floats.
     #[default]
     F64,
@@ -46,6 +48,7 @@ impl Precision {
     pub fn name(self) -> &'static str {
         match self {
             Self::F32 => "f32",
+            Self::Mixed => "mixed",
             Self::F64 => "f64",
         }
     }

@@ -55,7 +55,11 @@ impl Evolution {
     /// first order, so that points do not move after the evaluation; the others treat it as any
     /// rate.
     #[must_use]
-    pub fn with_drift<T: Element>(mut self, position: State<T>, drift: Rate<T>) -> Self {
+    pub fn with_drift<T: Element, V: Element>(
+        mut self,
+        position: State<T>,
+        drift: Rate<V>,
+    ) -> Self {
         use crate::columns::Handle;
         self.drifts.push((position.id(), drift.id()));
         self

@@ -19,12 +19,8 @@ impl AccelerationField {
     }
 
     /// The acceleration at a point and time.
-    pub(crate) fn at<T: Real, const D: usize>(&self, position: [T; D], time: f64) -> [T; D] {
-        let mut x = [0.0; 3];
-        for a in 0..D {
-            x[a] = position[a].as_f64();
-        }
-        let given = self.0(x, time);
+    pub(crate) fn at<T: Real, const D: usize>(&self, position: [f64; 3], time: f64) -> [T; D] {
+        let given = self.0(position, time);
         let mut acceleration = [T::zero(); D];
         for a in 0..D {
             acceleration[a] = T::of(given[a]);

@@ -4,12 +4,11 @@
 //! depends on the sum.
 
 use finegrain_framework::space::Cells;
-use finegrain_framework::space::cells::CellBlock;
 use finegrain_framework::{
     ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, Stage, State,
 };
 
-use crate::candidates::{Candidates, Gathered};
+use crate::candidates::{Candidates, Gathered, Layout};
 use crate::evaluation::{Alone, Piece};
 use crate::fields::Fields;
 use crate::kernel::adaptive::AdaptiveKernel;
@@ -27,64 +26,120 @@ const MOST_ITERATIONS: usize = 100;
 /// Newton's method within a bracket, from the smoothing length that goes with the particle's last
 /// density, which is part of its state: a restart finds the same bits.
 #[derive(Clone, Debug)]
-pub(crate) struct AdaptiveDensity<T, const D: usize> {
-    kernel: AdaptiveKernel<T, D>,
-    mass: T,
-    /// `eta`.
-    ratio: T,
-    gathered: Gathered<T>,
+pub(crate) struct AdaptiveDensity<T, P, const D: usize> {
+    gathered: Gathered<T, P>,
     density: State<T>,
     identity: State<u32>,
     smoothing_length: Rate<T>,
     grad_h: Rate<T>,
+    solver: Solver<T, D>,
 }
 
-impl<T: Real, const D: usize> AdaptiveDensity<T, D> {
+impl<T: Real, P: Real, const D: usize> AdaptiveDensity<T, P, D> {
     /// For particles of mass `mass`, kg, and the smoothing ratio `ratio`.
-    pub fn piece(kernel: AdaptiveKernel<T, D>, mass: T, ratio: T) -> Piece<T> {
+    pub fn piece(kernel: AdaptiveKernel<T, D>, mass: T, ratio: T) -> Piece<T, P> {
         Piece::Alone(Alone {
             reads: Vec::new(),
             writes: vec![Quantity::SmoothingLength, Quantity::GradH],
-            stage: Box::new(move |fields: &Fields<T>| {
+            stage: Box::new(move |fields: &Fields<T, P>| {
                 let rate = |quantity| fields.rate(quantity).expect("declared, since it is written");
+                let gathered = Gathered::new(fields, Vec::new(), true);
+                let layout = gathered.layout.clone();
                 Stage::rate(Self {
-                    kernel,
-                    mass,
-                    ratio,
-                    gathered: Gathered::new(fields, Vec::new(), true),
+                    gathered,
                     density: fields.density,
                     identity: fields.identity,
                     smoothing_length: rate(Quantity::SmoothingLength),
                     grad_h: rate(Quantity::GradH),
+                    solver: Solver { kernel, mass, ratio, layout },
                 })
             }),
         })
     }
 
-    /// All particles of a sub-domain.
+    #[cold]
+    fn fault(&self, near: &Near<'_, Cells<P>>, i: usize, needed: T) -> Fault {
+        let identity = near.state(self.identity).own().whole()[i];
+        let longest = self.solver.kernel.longest;
+        Fault::new(if needed.is_nan() {
+            format!("the smoothing length of particle {identity} does not converge")
+        } else {
+            format!(
+                "particle {identity} needs a smoothing length of about {needed:.3e} m; it must be at \
+                 most {longest:.3e} m, for which neighbours are searched"
+            )
+        })
+    }
+}
+
+impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for AdaptiveDensity<T, P, D> {
+    type Scratch = Scratch<T, D>;
+
+    fn name(&self) -> &str {
+        "sph density and smoothing length"
+    }
+
+    fn writes(&self) -> Vec<ColumnId> {
+        vec![self.smoothing_length.id(), self.grad_h.id()]
+    }
+
+    fn rate(
+        &self,
+        near: &Near<'_, Cells<P>>,
+        rates: &mut Rates<'_, Cells<P>>,
+        scratch: &mut Self::Scratch,
+        _: &Moment,
+    ) -> Result<(), Fault> {
+        let block = near.domain().sub_domain(near.id());
+        let smoothing_length = rates.column(self.smoothing_length).whole();
+        let grad_h = rates.column(self.grad_h).whole();
+        let density = near.state(self.density).own().whole();
+        let solver = &self.solver;
+        let range = solver.kernel.support() * solver.kernel.longest;
+        let (arch, first) = (pulp::Arch::new(), near.spans()[0].start);
+        for cell in block.cells() {
+            scratch.candidates.collect(&self.gathered, near, &block, cell, range);
+            let own = cell.span.start - first..cell.span.end - first;
+            let task = Task {
+                solver,
+                density: &density[own.clone()],
+                written: [&mut smoothing_length[own.clone()], &mut grad_h[own.clone()]],
+                scratch,
+            };
+            if let Err((k, needed)) = arch.dispatch(task) {
+                return Err(self.fault(near, own.start + k, needed));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is computed from gathered values.
+#[derive(Clone, Debug)]
+struct Solver<T, const D: usize> {
+    kernel: AdaptiveKernel<T, D>,
+    mass: T,
+    /// `eta`.
+    ratio: T,
+    layout: Layout,
+}
+
+impl<T: Real, const D: usize> Solver<T, D> {
+    /// All particles of a cell; in error, the number of one in the cell and the smoothing length it
+    /// would need.
     #[inline(always)]
     fn run(
         &self,
-        near: &Near<'_, Cells<T>>,
-        block: &CellBlock<'_, T>,
+        density: &[T],
         [smoothing_length, grad_h]: [&mut [T]; 2],
         scratch: &mut Scratch<T, D>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), (usize, T)> {
         let Scratch { candidates, neighbours, ones } = scratch;
-        let density = near.state(self.density).own().whole();
-        let range = self.kernel.support() * self.kernel.longest;
-        let first = near.spans()[0].start;
-        for cell in block.cells() {
-            candidates.collect(&self.gathered, near, block, cell, range);
-            for k in 0..cell.span.len() {
-                let i = cell.span.start - first + k;
-                let particle = candidates.particle(&self.gathered, k);
-                let guess = self.ratio * root::<T, D>(self.mass / density[i]);
-                match self.solve(candidates, neighbours, ones, &particle, guess) {
-                    Ok((h, omega)) => (smoothing_length[i], grad_h[i]) = (h, omega),
-                    Err(needed) => return Err(self.fault(near, i, needed)),
-                }
-            }
+        for k in 0..density.len() {
+            let particle = candidates.particle(&self.layout, k);
+            let guess = self.ratio * root::<T, D>(self.mass / density[k]);
+            let solved = self.solve(candidates, neighbours, ones, &particle, guess);
+            (smoothing_length[k], grad_h[k]) = solved.map_err(|needed| (k, needed))?;
         }
         Ok(())
     }
@@ -109,12 +164,7 @@ impl<T: Real, const D: usize> AdaptiveDensity<T, D> {
             if h > reach {
                 // A little further, for the iterations to come.
                 reach = (T::of(1.1) * h).min(longest);
-                neighbours.find(
-                    &self.gathered,
-                    candidates,
-                    particle,
-                    self.kernel.support() * reach,
-                );
+                neighbours.find(&self.layout, candidates, particle, self.kernel.support() * reach);
                 ones.resize(neighbours.distance_squared().len().max(ones.len()), T::one());
             }
             neighbours.evaluate(&self.kernel.at(h));
@@ -147,20 +197,6 @@ impl<T: Real, const D: usize> AdaptiveDensity<T, D> {
             };
         }
         Err(T::nan())
-    }
-
-    #[cold]
-    fn fault(&self, near: &Near<'_, Cells<T>>, i: usize, needed: T) -> Fault {
-        let identity = near.state(self.identity).own().whole()[i];
-        let longest = self.kernel.longest;
-        Fault::new(if needed.is_nan() {
-            format!("the smoothing length of particle {identity} does not converge")
-        } else {
-            format!(
-                "particle {identity} needs a smoothing length of about {needed:.3e} m; it must be at \
-                 most {longest:.3e} m, for which neighbours are searched"
-            )
-        })
     }
 }
 
@@ -202,45 +238,19 @@ impl<T: Real, const D: usize> Default for Scratch<T, D> {
     }
 }
 
-/// A sub-domain's share, to be compiled for every instruction set.
-struct Task<'s, 'n, T: Real, const D: usize> {
-    stage: &'s AdaptiveDensity<T, D>,
-    near: &'s Near<'n, Cells<T>>,
-    block: &'s CellBlock<'n, T>,
+/// A cell's share, to be compiled for every instruction set.
+struct Task<'s, T: Real, const D: usize> {
+    solver: &'s Solver<T, D>,
+    density: &'s [T],
     written: [&'s mut [T]; 2],
     scratch: &'s mut Scratch<T, D>,
 }
 
-impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
-    type Output = Result<(), Fault>;
+impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, T, D> {
+    type Output = Result<(), (usize, T)>;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
-        self.stage.run(self.near, self.block, self.written, self.scratch)
-    }
-}
-
-impl<T: Real, const D: usize> RateStage<Cells<T>> for AdaptiveDensity<T, D> {
-    type Scratch = Scratch<T, D>;
-
-    fn name(&self) -> &str {
-        "sph density and smoothing length"
-    }
-
-    fn writes(&self) -> Vec<ColumnId> {
-        vec![self.smoothing_length.id(), self.grad_h.id()]
-    }
-
-    fn rate(
-        &self,
-        near: &Near<'_, Cells<T>>,
-        rates: &mut Rates<'_, Cells<T>>,
-        scratch: &mut Self::Scratch,
-        _: &Moment,
-    ) -> Result<(), Fault> {
-        let block = near.domain().sub_domain(near.id());
-        let written =
-            [rates.column(self.smoothing_length).whole(), rates.column(self.grad_h).whole()];
-        pulp::Arch::new().dispatch(Task { stage: self, near, block: &block, written, scratch })
+        self.solver.run(self.density, self.written, self.scratch)
     }
 }

@@ -8,21 +8,43 @@ use nalgebra::Matrix3;
 use crate::evaluation::{Piece, Update};
 use crate::fields::Fields;
 use crate::quantity::{Quantity, component};
+use crate::term::moment::{DensitySlope, MomentMatrix};
+use crate::term::{AnyTerm, Term};
 
 /// The least eigenvalue of a moment matrix that is inverted: below it, in a free surface's
 /// outermost particles and spray, gradients stay as they are (half of the unit matrix is what a
 /// flat surface leaves across itself).
 const LEAST_EIGENVALUE: f64 = 0.1;
 
-/// The update after the sums of [`crate::term::moment`].
+/// The update after the sums of [`crate::term::moment`]; the correction is the inverse of the moment
+/// matrix (Bonet & Lok 1999, eq. 46).
 #[derive(Clone, Debug)]
-pub(crate) struct Correction<T> {
-    fields: Fields<T>,
+pub(crate) struct Correction<T, P> {
+    fields: Fields<T, P>,
 }
 
-impl<T: Real> Correction<T> {
+impl<T: Real, P: Real> Correction<T, P> {
+    /// The sums and the update for what `terms` read of it; none if that is nothing.
+    pub fn pieces(dims: usize, terms: &[AnyTerm<T>]) -> Vec<Piece<T, P>> {
+        let is_ours = |q: &Quantity| {
+            use Quantity::{Correction, DensityGradient, Fullness};
+            matches!(q, Correction(_) | DensityGradient(_) | Fullness)
+        };
+        let reads = terms.iter().flat_map(|term| term.reads(dims));
+        let wanted: Vec<_> = reads.filter(is_ours).collect();
+        if wanted.is_empty() {
+            return Vec::new();
+        }
+        let mut pieces =
+            vec![Self::update(dims, &wanted), Piece::Term(MomentMatrix::default().into())];
+        if wanted.contains(&Quantity::DensityGradient(0)) {
+            pieces.push(Piece::Term(DensitySlope::default().into()));
+        }
+        pieces
+    }
+
     /// The update that writes those of the quantities that are in `wanted`.
-    pub fn piece(dims: usize, wanted: &[Quantity]) -> Piece<T> {
+    fn update(dims: usize, wanted: &[Quantity]) -> Piece<T, P> {
         let moments = Quantity::symmetric(Quantity::Moment, dims);
         let slopes = Quantity::vector(Quantity::DensitySlope, dims)
             .filter(|_| wanted.contains(&Quantity::DensityGradient(0)));
@@ -38,14 +60,14 @@ impl<T: Real> Correction<T> {
     }
 }
 
-impl<T: Real> UpdateStage<Cells<T>> for Correction<T> {
+impl<T: Real, P: Real> UpdateStage<Cells<P>> for Correction<T, P> {
     type Scratch = ();
 
     fn name(&self) -> &str {
         "correction of the kernel gradient"
     }
 
-    fn update(&self, own: &mut Own<'_, Cells<T>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
+    fn update(&self, own: &mut Own<'_, Cells<P>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
         let fields = &self.fields;
         let dims = fields.position.len();
         let mut moment = [&[][..]; 6];

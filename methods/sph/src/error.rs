@@ -40,6 +40,61 @@ pub enum SphError {
         /// Why.
         cause: ShapeError,
     },
+    /// The kernel reaches too far around a periodic box.
+    #[error(
+        "the kernel reaches {range:.3e} m, more than twice the period of {period:.3e} m in direction \
+         {direction}: make the box longer, or smoothing_ratio or the spacing smaller"
+    )]
+    Period {
+        /// Direction of the period.
+        direction: usize,
+        /// The period, m.
+        period: f64,
+        /// Radius of the kernel's support, m.
+        range: f64,
+    },
+    /// Two particles are at one place, or nearly.
+    #[error(
+        "particles {first} and {second} are {distance:.3e} m apart, at {position:?}; it must be at \
+         least {least:.3e} m"
+    )]
+    Overlap {
+        /// One of them, counted as the positions are.
+        first: usize,
+        /// The other.
+        second: usize,
+        /// Position of the first, m.
+        position: [f64; 3],
+        /// Their distance, m.
+        distance: f64,
+        /// The least distance, m.
+        least: f64,
+    },
+    /// A body without particles, which the fluid would not feel.
+    #[error("body {number}: no particle fills it")]
+    EmptyBody {
+        /// Which.
+        number: usize,
+    },
+    /// A body that is not filled as deep as the fluid sees it.
+    #[error(
+        "body {number}: {} at {at:?}, as deep as particle {particle} of the fluid sees with a kernel \
+         that reaches {range:.3e} m; fill it with particles, or make smoothing_ratio or the spacing \
+         smaller",
+        if *.is_thin { "it is too thin" } else { "there is a gap" }
+    )]
+    Gap {
+        /// Which body.
+        number: usize,
+        /// The particle that sees the gap, counted as the positions are.
+        particle: usize,
+        /// Where there is none of the body's particles around, m.
+        at: [f64; 3],
+        /// Radius of the kernel's support, m.
+        range: f64,
+        /// Whether that is outside of all bodies.
+        is_thin: bool,
+    },
     /// Space could not be divided.
     #[error(transparent)]
     Space(#[from] Fault),

@@ -13,34 +13,34 @@ use crate::quantity::Quantity;
 use crate::term::{AnyTerm, Term};
 
 /// Something that is evaluated.
-pub(crate) enum Piece<T: Real> {
+pub(crate) enum Piece<T: Real, P: Real> {
     Term(AnyTerm<T>),
-    Update(Update<T>),
-    Alone(Alone<T>),
+    Update(Update<T, P>),
+    Alone(Alone<T, P>),
 }
 
 /// A rate stage that is not made of terms.
-pub(crate) struct Alone<T: Real> {
+pub(crate) struct Alone<T: Real, P: Real> {
     pub reads: Vec<Quantity>,
     pub writes: Vec<Quantity>,
     /// Makes it once the columns are known.
-    pub stage: MakeStage<T>,
+    pub stage: MakeStage<T, P>,
 }
 
 /// Makes a stage from the columns of a model.
-pub(crate) type MakeStage<T> = Box<dyn FnOnce(&Fields<T>) -> Stage<Cells<T>>>;
+pub(crate) type MakeStage<T, P> = Box<dyn FnOnce(&Fields<T, P>) -> Stage<Cells<P>>>;
 
 /// An update of a particle's own quantities.
-pub(crate) struct Update<T: Real> {
+pub(crate) struct Update<T: Real, P: Real> {
     pub reads: Vec<Quantity>,
     pub writes: Vec<Quantity>,
     /// Whether it overwrites what is already there, in bodies, from sums over the fluid.
     pub amends: bool,
     /// Makes its stage once the columns are known.
-    pub stage: MakeStage<T>,
+    pub stage: MakeStage<T, P>,
 }
 
-impl<T: Real> Piece<T> {
+impl<T: Real, P: Real> Piece<T, P> {
     /// The quantities that it needs.
     pub fn reads(&self, dims: usize) -> Vec<Quantity> {
         match self {
@@ -96,7 +96,10 @@ impl<T: Real> Piece<T> {
 ///
 /// # Panics
 /// If pieces need each other in a circle.
-pub(crate) fn slots<T: Real>(pieces: Vec<Piece<T>>, dims: usize) -> Vec<Vec<Piece<T>>> {
+pub(crate) fn slots<T: Real, P: Real>(
+    pieces: Vec<Piece<T, P>>,
+    dims: usize,
+) -> Vec<Vec<Piece<T, P>>> {
     let mut slots: Vec<usize> = pieces.iter().map(|piece| piece.from(0)).collect();
     let mut is_settled = false;
     while !is_settled {
@@ -119,7 +122,7 @@ pub(crate) fn slots<T: Real>(pieces: Vec<Piece<T>>, dims: usize) -> Vec<Vec<Piec
         }
     }
     delay(&pieces, &mut slots, dims);
-    let mut sorted: Vec<Vec<Piece<T>>> = Vec::new();
+    let mut sorted: Vec<Vec<Piece<T, P>>> = Vec::new();
     sorted.resize_with(slots.iter().max().map_or(0, |last| last + 1), Vec::new);
     for (piece, slot) in pieces.into_iter().zip(slots) {
         sorted[slot].push(piece);
@@ -129,7 +132,7 @@ pub(crate) fn slots<T: Real>(pieces: Vec<Piece<T>>, dims: usize) -> Vec<Vec<Piec
 
 /// Moves sums for the fluid that nobody waits for from sweeps that would otherwise look at bodies
 /// only to the last sweep, so that the neighbours of the fluid are gathered once less.
-fn delay<T: Real>(pieces: &[Piece<T>], slots: &mut [usize], dims: usize) {
+fn delay<T: Real, P: Real>(pieces: &[Piece<T, P>], slots: &mut [usize], dims: usize) {
     let is_last = |i: usize| {
         pieces[i].acts_on_fluid() && !pieces.iter().any(|other| other.needs(&pieces[i], dims))
     };
@@ -151,7 +154,7 @@ mod tests {
     use crate::term::momentum::{PressureGradient, StressDivergence};
     use crate::term::strain_rate::StrainRate;
 
-    fn state_equation() -> Piece<f64> {
+    fn state_equation() -> Piece<f64, f64> {
         Piece::Update(Update {
             reads: Vec::new(),
             writes: vec![Quantity::Volume, Quantity::PressureTerm],
@@ -160,8 +163,8 @@ mod tests {
         })
     }
 
-    fn names(slots: &[Vec<Piece<f64>>]) -> Vec<Vec<&'static str>> {
-        let name = |piece: &Piece<f64>| match piece {
+    fn names(slots: &[Vec<Piece<f64, f64>>]) -> Vec<Vec<&'static str>> {
+        let name = |piece: &Piece<f64, f64>| match piece {
             Piece::Term(AnyTerm::Continuity(_)) => "continuity",
             Piece::Term(AnyTerm::PressureGradient(_)) => "pressure",
             Piece::Term(AnyTerm::StrainRate(_)) => "strain",
@@ -177,15 +180,17 @@ mod tests {
     fn one_sweep_where_nothing_depends_on_rates_and_two_where_stress_does() {
         let mass = 1.0;
         let inviscid = vec![
-            Piece::Term(Continuity { mass }.into()),
+            Piece::Term(Continuity { mass, is_corrected: false }.into()),
             Piece::Term(PressureGradient { mass }.into()),
             state_equation(),
         ];
         assert_eq!(names(&slots(inviscid, 2)), [vec!["update"], vec!["continuity", "pressure"]]);
+        let strain_rate =
+            StrainRate { mass, dynamic_viscosity: 1.0, in_bodies: None, is_corrected: false };
         let viscous = vec![
             Piece::Term(StressDivergence { mass }.into()),
-            Piece::Term(Continuity { mass }.into()),
-            Piece::Term(StrainRate { mass, dynamic_viscosity: 1.0, in_bodies: None }.into()),
+            Piece::Term(Continuity { mass, is_corrected: false }.into()),
+            Piece::Term(strain_rate.into()),
             Piece::Term(PressureGradient { mass }.into()),
             state_equation(),
         ];

@@ -7,11 +7,11 @@ use crate::quantity::Quantity;
 /// Names of the coordinate directions, for column names.
 const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
 
-/// Handles of the columns of one model.
+/// Handles of the columns of one model, of type `T` but for the positions, of type `P`.
 #[derive(Clone, Debug)]
-pub struct Fields<T> {
+pub struct Fields<T, P = T> {
     /// Position, m, one column a direction.
-    pub position: Vec<State<T>>,
+    pub position: Vec<State<P>>,
     /// Velocity, m/s.
     pub velocity: Vec<State<T>>,
     /// Density, kg/m^3.
@@ -89,7 +89,7 @@ pub(crate) enum Column<T> {
     Rate(Rate<T>),
 }
 
-impl<T: Real> Fields<T> {
+impl<T: Real, P: Real> Fields<T, P> {
     /// Declares the columns of a model in `dims` dimensions whose terms use the quantities `uses`.
     pub(crate) fn declare(
         columns: &mut Columns,

@@ -10,7 +10,7 @@ use crate::fields::Fields;
 use crate::kernel::adaptive::AdaptiveKernel;
 use crate::physics::{Fluid, Physics};
 use crate::quantity::Quantity;
-use crate::scheme::Scheme;
+use crate::scheme::{Gradient, Scheme};
 use crate::state_equation::StateEquation;
 use crate::term::conductivity::Conductivity;
 use crate::term::gas_pressure::GasPressure;
@@ -43,13 +43,13 @@ impl ShockCapturing {
 }
 
 /// The pieces of gas dynamics, for particles of mass `mass` and the smoothing ratio `ratio`.
-pub(crate) fn pieces<T: Real, const D: usize>(
+pub(crate) fn pieces<T: Real, P: Real, const D: usize>(
     kernel: AdaptiveKernel<T, D>,
     mass: T,
     ratio: T,
     heat_ratio: T,
     shocks: Option<ShockCapturing>,
-) -> Vec<Piece<T>> {
+) -> Vec<Piece<T, P>> {
     let mut pieces = vec![
         AdaptiveDensity::piece(kernel, mass, ratio),
         GasState::<T, D>::piece(mass, ratio, heat_ratio),
@@ -89,7 +89,7 @@ struct GasState<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> GasState<T, D> {
-    fn piece(mass: T, ratio: T, heat_ratio: T) -> Piece<T> {
+    fn piece<P: Real>(mass: T, ratio: T, heat_ratio: T) -> Piece<T, P> {
         Piece::Update(Update {
             reads: vec![Quantity::SmoothingLength, Quantity::GradH],
             writes: vec![
@@ -99,7 +99,7 @@ impl<T: Real, const D: usize> GasState<T, D> {
                 Quantity::SoundSpeed,
             ],
             amends: false,
-            stage: Box::new(move |fields: &Fields<T>| {
+            stage: Box::new(move |fields: &Fields<T, P>| {
                 let rate = |quantity| fields.rate(quantity).expect("declared, since it is read");
                 Stage::update(Self {
                     mass,
@@ -119,14 +119,14 @@ impl<T: Real, const D: usize> GasState<T, D> {
     }
 }
 
-impl<T: Real, const D: usize> UpdateStage<Cells<T>> for GasState<T, D> {
+impl<T: Real, P: Real, const D: usize> UpdateStage<Cells<P>> for GasState<T, D> {
     type Scratch = ();
 
     fn name(&self) -> &str {
         "ideal gas"
     }
 
-    fn update(&self, own: &mut Own<'_, Cells<T>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
+    fn update(&self, own: &mut Own<'_, Cells<P>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
         let smoothing_length = own.rate(self.smoothing_length).whole();
         let grad_h = own.rate(self.grad_h).whole();
         let energy = own.state(self.energy).whole();
@@ -173,6 +173,8 @@ pub(crate) fn check(fluid: &Fluid, physics: &Physics, scheme: &Scheme) -> Result
     let follows = scheme.smoothing.is_adaptive();
     requires(follows, "an ideal gas", "a smoothing length that follows the density")?;
     requires(physics.energy, "an ideal gas", "the energy equation")?;
+    let is_plain = scheme.gradient == Gradient::Kernel;
+    requires(is_plain, "an ideal gas", "gradient = kernel")?;
     requires(physics.viscosity.is_none(), "an ideal gas", "no laminar viscosity")?;
     requires(physics.bodies.is_empty(), "an ideal gas", "space without bodies")
 }

@@ -11,8 +11,8 @@ use crate::state_equation::StateEquation;
 
 /// Time step from the fastest signals and accelerations, each with the smoothing length where it is.
 #[derive(Clone, Debug)]
-pub(crate) struct GasPacing<T> {
-    fields: Fields<T>,
+pub(crate) struct GasPacing<T, P> {
+    fields: Fields<T, P>,
     /// `eta m^(1/d)`: smoothing length times the root of the density.
     scale: f64,
     heat_ratio: f64,
@@ -24,9 +24,9 @@ pub(crate) struct GasPacing<T> {
     most_steps: u64,
 }
 
-impl<T: Real> GasPacing<T> {
+impl<T: Real, P: Real> GasPacing<T, P> {
     pub fn new(
-        fields: &Fields<T>,
+        fields: &Fields<T, P>,
         fluid: &Fluid,
         scheme: &Scheme,
         mass: f64,
@@ -50,10 +50,10 @@ impl<T: Real> GasPacing<T> {
     }
 }
 
-impl<T: Real> Pacing<Cells<T>> for GasPacing<T> {
+impl<T: Real, P: Real> Pacing<Cells<P>> for GasPacing<T, P> {
     /// `dt = C min(0.5 h / v_sig, 0.25 sqrt(h / a))` over all particles, with the fastest signal of
     /// a particle `v_sig`, at least twice its sound speed (Monaghan 1997, section 5).
-    fn pace(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<Pace, Fault> {
+    fn pace(&mut self, whole: &mut Whole<'_, Cells<P>>) -> Result<Pace, Fault> {
         let fields = &self.fields;
         let dims = fields.position.len() as f64;
         let speed = crate::measure::largest_speed(whole, fields);

@@ -3,19 +3,22 @@
 //! The formulation of Holmes, Williams & Tilke (2011), composed of terms: conservation of mass
 //! (I.1), momentum (I.2) with pressure and viscosity, and energy (I.3) where a scene asks for it;
 //! an equation of state for weakly compressible flow; gas with shocks and smoothing lengths that
-//! follow its density; bodies filled with particles at rest. What a
-//! scene does not name has no columns and no loops. 1-D, 2-D and 3-D, `f32` and `f64`.
+//! follow its density; bodies filled with particles at rest. What a scene does not name has no
+//! columns and no loops. 1-D, 2-D and 3-D; in `f32`, in `f64`, or mixed, with positions in `f64` and
+//! all else in `f32`.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `term/` | one sum over neighbours each, reading like its equation |
 //! | `evaluation.rs` | the order of the terms and updates, from what they read and write |
-//! | `sweep.rs` | a rate stage: gathers the neighbours of a particle once and runs the terms over them |
+//! | `sweep.rs`, `sums.rs` | a rate stage: gathers what particles see once, and runs the terms over it |
 //! | `candidates.rs`, `neighbourhood.rs` | candidates of a cell, in records; neighbours of a particle, in lanes |
 //! | [`kernel`] | smoothing functions |
 //! | [`body`], `wall.rs`, `wall_state.rs`, `surface_distance.rs` | bodies, and how the fluid feels them |
 //! | [`packing`] | lattices that are exactly periodic |
+//! | `start_check.rs`, `initial_state.rs` | refuse a start that makes no sense |
 //! | [`physics`], [`scheme`], [`start`] | what a scene models, how, and from which particles |
+//! | `liquid.rs`, [`gas`] | the terms and updates that a liquid and a gas are composed of |
 //! | [`model`] | builds a framework model of it |
 //!
 //! # Example
@@ -71,13 +74,18 @@ pub mod start;
 pub mod state_equation;
 
 mod adaptive_density;
+mod bins;
 mod candidates;
 mod correction;
 mod evaluation;
 mod gas_pacing;
+mod initial_state;
+mod liquid;
 mod neighbourhood;
 mod pacing;
 mod quantity;
+mod start_check;
+mod sums;
 mod surface_distance;
 mod sweep;
 mod term;
@@ -94,7 +102,7 @@ pub use kernel::{Kernel, SmoothingFunction};
 pub use model::Sph;
 pub use packing::{Lattice, Packing};
 pub use physics::{Fluid, Physics, Viscosity};
-pub use scheme::{Density, Edac, PressureForm, Scheme};
+pub use scheme::{Density, Edac, Gradient, PressureForm, Scheme};
 pub use smoothing::Smoothing;
 pub use stabilisation::{ArtificialViscosity, DensityDiffusion, DiffusionForm, Stabilisation};
 pub use start::Start;

@@ -24,9 +24,9 @@ pub struct Totals {
 }
 
 /// Sums up the fluid.
-pub fn totals<T: Real>(
-    whole: &mut Whole<'_, Cells<T>>,
-    fields: &Fields<T>,
+pub fn totals<T: Real, P: Real>(
+    whole: &mut Whole<'_, Cells<P>>,
+    fields: &Fields<T, P>,
     particle_mass: f64,
 ) -> Totals {
     let sums = whole.sum(|near| {
@@ -65,9 +65,9 @@ pub fn totals<T: Real>(
 /// of bodies feel for which `belongs` says that they are of this body, of their position. What they
 /// exert on each other cancels; 0 where the model does not know forces on bodies, see
 /// [`Physics::forces_on_bodies`](crate::Physics::forces_on_bodies).
-pub fn force_on_body<T: Real>(
-    whole: &mut Whole<'_, Cells<T>>,
-    fields: &Fields<T>,
+pub fn force_on_body<T: Real, P: Real>(
+    whole: &mut Whole<'_, Cells<P>>,
+    fields: &Fields<T, P>,
     particle_mass: f64,
     belongs: impl Fn([f64; 3]) -> bool + Sync,
 ) -> [f64; 3] {
@@ -110,9 +110,9 @@ impl Energies {
 }
 
 /// Sums up the energies of the fluid; `potential` is that of the body force per mass, J/kg.
-pub fn energies<T: Real>(
-    whole: &mut Whole<'_, Cells<T>>,
-    fields: &Fields<T>,
+pub fn energies<T: Real, P: Real>(
+    whole: &mut Whole<'_, Cells<P>>,
+    fields: &Fields<T, P>,
     fluid: &Fluid,
     particle_mass: f64,
     potential: impl Fn([f64; 3]) -> f64 + Sync,
@@ -146,7 +146,10 @@ pub fn energies<T: Real>(
 }
 
 /// Largest speed of any particle, m/s.
-pub fn largest_speed<T: Real>(whole: &mut Whole<'_, Cells<T>>, fields: &Fields<T>) -> f64 {
+pub fn largest_speed<T: Real, P: Real>(
+    whole: &mut Whole<'_, Cells<P>>,
+    fields: &Fields<T, P>,
+) -> f64 {
     let [squared] = whole.max(|near| {
         let mut most = 0.0f64;
         for i in 0..near.spans()[0].len() {

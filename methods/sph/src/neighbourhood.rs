@@ -5,10 +5,10 @@ use std::ops::Index;
 use finegrain_framework::Real;
 use finegrain_framework::lanes::{Found, RECORD};
 
-use crate::candidates::{ABSENT, Candidates, Gathered};
+use crate::candidates::{ABSENT, Candidates, Layout};
 use crate::kernel::Kernel;
 use crate::kernel::adaptive::Kernels;
-use crate::quantity::{Quantity, Values};
+use crate::quantity::{Quantity, Values, component};
 use crate::wall::{Extrapolation, VelocityInBodies};
 
 /// The particle whose rates are wanted.
@@ -31,6 +31,19 @@ impl<T: Real, const D: usize> Particle<T, D> {
     #[inline(always)]
     pub fn is_wall(&self) -> bool {
         self[Quantity::WallDepth] > T::zero()
+    }
+
+    /// A sum over kernel gradients with the correction of Bonet & Lok (1999); only for terms that
+    /// read it.
+    #[inline(always)]
+    pub fn corrected(&self, sum: [T; D]) -> [T; D] {
+        let mut corrected = [T::zero(); D];
+        for a in 0..D {
+            for b in 0..D {
+                corrected[a] += self[Quantity::Correction(component(a, b))] * sum[b];
+            }
+        }
+        corrected
     }
 }
 
@@ -84,7 +97,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[inline(always)]
     pub fn gather(
         &mut self,
-        gathered: &Gathered<T>,
+        layout: &Layout,
         candidates: &Candidates<T, D>,
         particle: &Particle<T, D>,
         kernels: &Kernels<T, D>,
@@ -98,7 +111,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
                 (kernel.at(own), kernel.support() * own.max(longest))
             }
         };
-        self.find(gathered, candidates, particle, radius);
+        self.find(layout, candidates, particle, radius);
         self.evaluate(&kernel);
         if let Kernels::Adaptive(kernel) = kernels {
             let (count, padded) = (self.found.len(), self.padded);
@@ -114,7 +127,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[inline(always)]
     pub fn find(
         &mut self,
-        gathered: &Gathered<T>,
+        layout: &Layout,
         candidates: &Candidates<T, D>,
         particle: &Particle<T, D>,
         radius: T,
@@ -126,8 +139,8 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         T::within(positions, particle.position, support * support, &mut self.found);
         let padded = self.found.padded();
         self.padded = padded;
-        if self.distance_squared.len() < padded || self.pages.len() != gathered.page_count() {
-            self.grow(padded, gathered);
+        if self.distance_squared.len() < padded || self.pages.len() != layout.page_count {
+            self.grow(padded, layout);
         }
         for (page, records) in self.pages.iter_mut().zip(&candidates.pages) {
             T::gather(records, &self.found, page);
@@ -162,16 +175,16 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     }
 
     #[cold]
-    fn grow(&mut self, length: usize, gathered: &Gathered<T>) {
-        self.places = gathered.places;
+    fn grow(&mut self, length: usize, layout: &Layout) {
+        self.places = layout.places;
         let has_own_lengths = self.places[Quantity::SmoothingLength.index()] != ABSENT;
-        self.pages.resize_with(gathered.page_count(), || std::array::from_fn(|_| Vec::new()));
+        self.pages.resize_with(layout.page_count, || std::array::from_fn(|_| Vec::new()));
         let all = self
             .pages
             .iter_mut()
             .flatten()
             .chain([&mut self.distance_squared, &mut self.gradient_factor])
-            .chain(gathered.has_kernel.then_some(&mut self.kernel))
+            .chain(layout.has_kernel.then_some(&mut self.kernel))
             .chain(has_own_lengths.then_some(&mut self.gradient_factor_of_others));
         for lanes in all {
             lanes.resize(length.max(lanes.len()), T::zero());
@@ -221,6 +234,22 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
             let (v, dx) = (self.values(Quantity::Velocity(a)), self.difference(a));
             for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(dx) {
                 *jump = (own - v).mul_add(dx, *jump);
+            }
+        }
+    }
+
+    /// Writes `(v_i - v_j) . L_i (x_i - x_j)` with the correction `L_i` of the kernel gradient; only
+    /// for terms that read it.
+    #[inline(always)]
+    pub fn corrected_velocity_jump(&self, i: &Particle<T, D>, jump: &mut [T]) {
+        jump.fill(T::zero());
+        for a in 0..D {
+            let (own, v) = (i[Quantity::Velocity(a)], self.values(Quantity::Velocity(a)));
+            for b in 0..D {
+                let correction = i[Quantity::Correction(component(a, b))];
+                for ((jump, &v), &dx) in jump.iter_mut().zip(v).zip(self.difference(b)) {
+                    *jump = (correction * (own - v)).mul_add(dx, *jump);
+                }
             }
         }
     }

@@ -8,12 +8,12 @@ use crate::fields::Fields;
 /// Sorts particles into cells at the beginning of every pace.
 pub(crate) struct Sort;
 
-impl<T: Real> WholeStage<Cells<T>> for Sort {
+impl<P: Real> WholeStage<Cells<P>> for Sort {
     fn name(&self) -> &str {
         "sort into cells"
     }
 
-    fn run(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<(), Fault> {
+    fn run(&mut self, whole: &mut Whole<'_, Cells<P>>) -> Result<(), Fault> {
         whole.domain.sort(whole.columns, whole.team)
     }
 }
@@ -21,8 +21,8 @@ impl<T: Real> WholeStage<Cells<T>> for Sort {
 /// Time step from sound speed, viscosity and acceleration, and the number of steps that particles
 /// surely stay within the skin.
 #[derive(Clone, Debug)]
-pub(crate) struct TimeStepControl<T> {
-    pub fields: Fields<T>,
+pub(crate) struct TimeStepControl<T, P> {
+    pub fields: Fields<T, P>,
     /// Smoothing length, m.
     pub smoothing_length: f64,
     /// Sound speed, m/s.
@@ -39,10 +39,10 @@ pub(crate) struct TimeStepControl<T> {
     pub most_steps: u64,
 }
 
-impl<T: Real> Pacing<Cells<T>> for TimeStepControl<T> {
+impl<T: Real, P: Real> Pacing<Cells<P>> for TimeStepControl<T, P> {
     /// `dt = C min(0.25 h / (c + v_max), 0.125 h^2 / nu, 0.25 sqrt(h / a_max))` (Morris, Fox & Zhu
     /// 1997, eqs. 29 to 31, with the speed added to that of sound).
-    fn pace(&mut self, whole: &mut Whole<'_, Cells<T>>) -> Result<Pace, Fault> {
+    fn pace(&mut self, whole: &mut Whole<'_, Cells<P>>) -> Result<Pace, Fault> {
         let fields = &self.fields;
         let [v2_max, a2_max, drift2_max] = whole.max(|near| {
             let mut most = [0.0f64; 3];

@@ -77,4 +77,7 @@ pub enum Viscosity {
     /// Adami, Hu & Adams (2012), eq. 9: as Morris, weighted with the squares of the volumes, as the
     /// density-weighted pressure gradient is.
     Adami,
+    /// Cleary & Monaghan (1999), Monaghan (2005): along the line between two particles, which
+    /// conserves angular momentum, too.
+    Monaghan,
 }

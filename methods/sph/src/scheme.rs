@@ -30,8 +30,12 @@ pub struct Scheme {
     pub edac: Option<Edac>,
     /// How the pressure of two particles makes a force.
     pub pressure_form: PressureForm,
+    /// The gradient of the kernel in differences: in velocity gradients, and in the antisymmetric
+    /// form of the pressure gradient.
+    pub gradient: Gradient,
     /// Drift of the particles towards an even distribution, in units of that of Adami, Hu & Adams
     /// (2013) with a background pressure of `rho c^2` and a time step of `0.25 h / c`; none if 0.
+    /// Goes only with density as a sum.
     pub transport: f64,
     /// Where the pressure in bodies comes from.
     pub wall_pressure: WallPressure,
@@ -57,6 +61,7 @@ impl Default for Scheme {
             density: Density::Continuity,
             edac: None,
             pressure_form: PressureForm::Symmetric,
+            gradient: Gradient::Kernel,
             transport: 0.0,
             wall_pressure: WallPressure::Evolved,
             wall_velocity: WallVelocity::Linear,
@@ -75,12 +80,23 @@ impl Scheme {
         positive("beta_max", self.beta_max)?;
         if let Some(edac) = self.edac {
             not_negative("edac.diffusion", edac.diffusion)?;
-            if self.pressure_form != PressureForm::DensityWeighted {
-                let (choice, others) = ("edac", "pressure_form = DensityWeighted");
+            if self.pressure_form == PressureForm::Symmetric {
+                let (choice, others) =
+                    ("edac", "pressure_form = density-weighted or antisymmetric");
                 return Err(SphError::Choice { choice, others });
             }
         }
         not_negative("transport", self.transport)?;
+        if self.transport > 0.0 && self.density == Density::Continuity {
+            // The equation of continuity has no w . grad rho: density would stay behind where
+            // particles drift to.
+            let (choice, others) = ("transport above 0", "density = summation");
+            return Err(SphError::Choice { choice, others });
+        }
+        if self.stabilisation.tensile_control && self.pressure_form != PressureForm::Symmetric {
+            let (choice, others) = ("tensile control", "pressure_form = symmetric");
+            return Err(SphError::Choice { choice, others });
+        }
         self.stabilisation.check()
     }
 }
@@ -114,4 +130,19 @@ pub enum PressureForm {
     /// `(rho_j p_i + rho_i p_j) / (rho_i + rho_j) (V_i^2 + V_j^2) / m^2` (Adami, Hu & Adams 2012,
     /// eq. 6).
     DensityWeighted,
+    /// `p_j - p_i`: exactly nothing where the pressure is constant, but momentum is not conserved.
+    Antisymmetric,
+}
+
+/// The gradient of the kernel in differences.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Gradient {
+    /// As it is.
+    #[default]
+    Kernel,
+    /// Times the inverse of the moment matrix of the neighbours (Bonet & Lok 1999): gradients of
+    /// linear fields are exact, however particles lie, beside free surfaces, too. One more sweep
+    /// over the neighbours.
+    Corrected,
 }

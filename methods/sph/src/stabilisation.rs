@@ -4,17 +4,14 @@
 use finegrain_framework::Real;
 use serde::{Deserialize, Serialize};
 
-use crate::correction::Correction;
 use crate::error::{SphError, not_negative, positive};
-use crate::evaluation::Piece;
 use crate::kernel::Kernel;
 use crate::physics::{Fluid, Physics};
-use crate::quantity::Quantity;
 use crate::term::artificial_pressure::ArtificialPressure;
 use crate::term::repulsion::Repulsion;
 use crate::term::shifting::Shifting;
 use crate::term::tensile_control::TensileControl;
-use crate::term::{Term, artificial_viscosity, density_diffusion, moment};
+use crate::term::{AnyTerm, artificial_viscosity, density_diffusion};
 
 /// Particles whose moment matrix has a smaller eigenvalue than this are of the free surface (Sun,
 /// Colagrossi, Marrone & Zhang 2017, section 2.3).
@@ -104,17 +101,16 @@ impl Stabilisation {
         Ok(())
     }
 
-    /// The pieces that it needs.
-    pub(crate) fn pieces<T: Real>(
+    /// The terms that it adds.
+    pub(crate) fn terms<T: Real>(
         &self,
         fluid: &Fluid,
         physics: &Physics,
         kernel: &Kernel<T>,
         spacing: f64,
-        mass: f64,
-        dims: usize,
-    ) -> Vec<Piece<T>> {
-        let (mass, h) = (T::of(mass), kernel.smoothing_length());
+        mass: T,
+    ) -> Vec<AnyTerm<T>> {
+        let h = kernel.smoothing_length();
         let sound_speed = T::of(fluid.sound_speed);
         let inverse_kernel = T::one() / kernel.w(T::of(spacing) / h);
         let least_fullness = T::of(LEAST_FULLNESS);
@@ -159,21 +155,6 @@ impl Stabilisation {
         if let Some(strength) = self.repulsion {
             terms.push(Repulsion { strength: T::of(strength), spacing: T::of(spacing) }.into());
         }
-        let needs: Vec<_> = terms.iter().flat_map(|term| Term::<T>::reads(term, dims)).collect();
-        let corrected = |q: &Quantity| {
-            use Quantity::{Correction, DensityGradient, Fullness};
-            matches!(q, Correction(_) | DensityGradient(_) | Fullness)
-        };
-        let wanted: Vec<_> = needs.into_iter().filter(corrected).collect();
-        let mut pieces = Vec::new();
-        if !wanted.is_empty() {
-            terms.push(moment::MomentMatrix::default().into());
-            if wanted.contains(&Quantity::DensityGradient(0)) {
-                terms.push(moment::DensitySlope::default().into());
-            }
-            pieces.push(Correction::piece(dims, &wanted));
-        }
-        pieces.extend(terms.into_iter().map(Piece::Term));
-        pieces
+        terms
     }
 }

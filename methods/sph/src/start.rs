@@ -35,17 +35,17 @@ impl Start {
     }
 
     /// Sets the initial state.
-    pub(crate) fn fill<T: Real>(
+    pub(crate) fn fill<T: Real, P: Real>(
         &self,
         columns: &mut Columns,
-        fields: &Fields<T>,
+        fields: &Fields<T, P>,
         fluid: &Fluid,
         walls: &Walls,
     ) {
         for (a, (&position, &velocity)) in fields.position.iter().zip(&fields.velocity).enumerate()
         {
             for (x, at) in columns.values_mut(position).iter_mut().zip(&self.positions) {
-                *x = T::of(at[a]);
+                *x = P::of(at[a]);
             }
             for (v, given) in columns.values_mut(velocity).iter_mut().zip(&self.velocities) {
                 *v = T::of(given[a]);

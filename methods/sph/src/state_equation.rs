@@ -89,22 +89,22 @@ impl StateEquation {
 /// The update that begins an evaluation: what follows from the density, which may itself be a sum,
 /// for particles of one mass.
 #[derive(Clone, Debug)]
-pub(crate) struct Thermodynamics<T> {
-    fields: Fields<T>,
+pub(crate) struct Thermodynamics<T, P> {
+    fields: Fields<T, P>,
     fluid: Fluid,
     particle_mass: T,
     /// Whether pressure evolves by itself.
     has_own_pressure: bool,
 }
 
-impl<T: Real> Thermodynamics<T> {
+impl<T: Real, P: Real> Thermodynamics<T, P> {
     /// The update for a model whose terms see pressure as `pressures`.
     pub fn piece(
         fluid: &Fluid,
         scheme: &Scheme,
         particle_mass: T,
         pressures: &[Quantity],
-    ) -> Piece<T> {
+    ) -> Piece<T, P> {
         let (fluid, has_own_pressure) = (*fluid, scheme.edac.is_some());
         let is_sum = scheme.density == Density::Summation;
         let written = pressures.iter().filter(|&&p| !has_own_pressure || p != Quantity::Pressure);
@@ -120,14 +120,14 @@ impl<T: Real> Thermodynamics<T> {
     }
 }
 
-impl<T: Real> UpdateStage<Cells<T>> for Thermodynamics<T> {
+impl<T: Real, P: Real> UpdateStage<Cells<P>> for Thermodynamics<T, P> {
     type Scratch = ();
 
     fn name(&self) -> &str {
         "equation of state"
     }
 
-    fn update(&self, own: &mut Own<'_, Cells<T>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
+    fn update(&self, own: &mut Own<'_, Cells<P>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
         let (fields, fluid) = (&self.fields, &self.fluid);
         let density = own.state_mut(fields.density).whole();
         if let Some(number) = fields.number_density {

@@ -16,7 +16,39 @@ use crate::quantity::Quantity;
 /// The surfaces of all bodies of a scene, with the periodic images that can be seen.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
-    bodies: Vec<(Body, [f64; 3])>,
+    /// Number of bodies of the scene.
+    count: usize,
+    images: Vec<Image>,
+}
+
+/// A body as it is seen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Image {
+    /// Number of the body among all.
+    pub number: usize,
+    body: Body,
+    /// To be added to a position for the body to be where it was declared.
+    shift: [f64; 3],
+}
+
+impl Image {
+    fn signed_distance(&self, x: [f64; 3]) -> f64 {
+        self.body.shape.signed_distance(std::array::from_fn(|a| x[a] + self.shift[a]))
+    }
+
+    /// Direction from `x` straight to the surface, or on into the body, by differences over `step`,
+    /// m, in the first `dims` directions.
+    pub fn inwards(&self, x: [f64; 3], step: f64, dims: usize) -> [f64; 3] {
+        let mut fall = [0.0; 3];
+        for a in 0..dims {
+            let (mut low, mut high) = (x, x);
+            low[a] -= step;
+            high[a] += step;
+            fall[a] = self.signed_distance(low) - self.signed_distance(high);
+        }
+        let norm = fall.iter().map(|x| x * x).sum::<f64>().sqrt();
+        fall.map(|x| x / norm)
+    }
 }
 
 impl Walls {
@@ -29,8 +61,8 @@ impl Walls {
             if a < dims { 0.5 * (region.lower[a] + region.upper[a]) } else { 0.0 }
         });
         let half_diagonal = 0.5 * (0..dims).map(|a| length(a).powi(2)).sum::<f64>().sqrt();
-        let mut bodies = Vec::new();
-        for body in all {
+        let mut seen_bodies = Vec::new();
+        for (number, &body) in all.iter().enumerate() {
             for k in images(2) {
                 for j in images(1) {
                     for i in images(0) {
@@ -40,13 +72,13 @@ impl Walls {
                         }
                         let seen = std::array::from_fn(|a| centre[a] + shift[a]);
                         if body.shape.signed_distance(seen) < half_diagonal + range {
-                            bodies.push((*body, shift));
+                            seen_bodies.push(Image { number, body, shift });
                         }
                     }
                 }
             }
         }
-        Self { bodies }
+        Self { count: all.len(), images: seen_bodies }
     }
 
     /// Distance to the nearest surface, m; negative inside a body.
@@ -56,14 +88,26 @@ impl Walls {
 
     /// Velocity of the nearest surface, m/s; 0 if there is none.
     pub fn surface_velocity(&self, x: [f64; 3]) -> [f64; 3] {
-        let nearest = self.distances(x).min_by(|(_, a), (_, b)| a.total_cmp(b));
-        nearest.map_or([0.0; 3], |(body, _)| body.surface_velocity)
+        self.nearest(x).map_or([0.0; 3], |(image, _)| image.body.surface_velocity)
     }
 
-    fn distances(&self, x: [f64; 3]) -> impl Iterator<Item = (&Body, f64)> {
-        self.bodies.iter().map(move |(body, shift)| {
-            (body, body.shape.signed_distance(std::array::from_fn(|a| x[a] + shift[a])))
+    /// The body with the nearest surface, and the distance to it, m, negative inside.
+    pub fn nearest(&self, x: [f64; 3]) -> Option<(&Image, f64)> {
+        self.distances(x).min_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
+    /// The first body that none of these points is in.
+    pub fn find_empty(&self, points: &[[f64; 3]]) -> Option<usize> {
+        (0..self.count).find(|&number| {
+            let fills = |x: [f64; 3]| {
+                self.distances(x).any(|(image, distance)| image.number == number && distance < 0.0)
+            };
+            !points.iter().any(|&x| fills(x))
         })
+    }
+
+    fn distances(&self, x: [f64; 3]) -> impl Iterator<Item = (&Image, f64)> {
+        self.images.iter().map(move |image| (image, image.signed_distance(x)))
     }
 }
 
@@ -81,7 +125,7 @@ pub(crate) enum Friction<T> {
 impl<T: Real> Friction<T> {
     /// How a fluid particle at `position` sees the velocities in bodies.
     #[inline(always)]
-    pub fn at<const D: usize>(&self, position: [T; D]) -> Extrapolation<T> {
+    pub fn at(&self, position: [f64; 3]) -> Extrapolation<T> {
         match self {
             Self::AsGiven => Extrapolation::none(),
             Self::Linear(no_slip) => no_slip.at(position),
@@ -130,12 +174,8 @@ pub(crate) struct NoSlip<T> {
 
 impl<T: Real> NoSlip<T> {
     /// How a fluid particle at `position` sees the velocities in bodies.
-    pub fn at<const D: usize>(&self, position: [T; D]) -> Extrapolation<T> {
-        let mut x = [0.0; 3];
-        for (x, position) in x.iter_mut().zip(position) {
-            *x = position.as_f64();
-        }
-        let distance = T::of(self.walls.signed_distance(x)).max(self.least_distance);
+    pub fn at(&self, position: [f64; 3]) -> Extrapolation<T> {
+        let distance = T::of(self.walls.signed_distance(position)).max(self.least_distance);
         Extrapolation { most: self.most, per_depth: T::one() / distance }
     }
 }

@@ -11,15 +11,15 @@ use crate::quantity::Quantity;
 /// The update that gives particles of bodies the density that goes with their pressure (Adami, Hu
 /// & Adams 2012, eq. 28), with all that follows from the two.
 #[derive(Clone, Debug)]
-pub(crate) struct WallState<T> {
-    fields: Fields<T>,
+pub(crate) struct WallState<T, P> {
+    fields: Fields<T, P>,
     fluid: Fluid,
     particle_mass: T,
 }
 
-impl<T: Real> WallState<T> {
+impl<T: Real, P: Real> WallState<T, P> {
     /// For particles of one mass, and terms that see pressure as `pressures`.
-    pub fn piece(fluid: &Fluid, particle_mass: T, pressures: &[Quantity]) -> Piece<T> {
+    pub fn piece(fluid: &Fluid, particle_mass: T, pressures: &[Quantity]) -> Piece<T, P> {
         let fluid = *fluid;
         Piece::Update(Update {
             reads: vec![Quantity::WallPressure],
@@ -32,14 +32,14 @@ impl<T: Real> WallState<T> {
     }
 }
 
-impl<T: Real> UpdateStage<Cells<T>> for WallState<T> {
+impl<T: Real, P: Real> UpdateStage<Cells<P>> for WallState<T, P> {
     type Scratch = ();
 
     fn name(&self) -> &str {
         "state of bodies"
     }
 
-    fn update(&self, own: &mut Own<'_, Cells<T>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
+    fn update(&self, own: &mut Own<'_, Cells<P>>, _: &mut (), _: &Moment) -> Result<(), Fault> {
         let fields = &self.fields;
         let (Some(depth), Some(extrapolated)) = (fields.wall_depth, fields.wall_pressure) else {
             return Ok(());

@@ -4,8 +4,9 @@ use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Settings, Simulation};
 use finegrain_sph::{
-    ArtificialViscosity, Body, DensityDiffusion, DiffusionForm, Edac, Fluid, Packing, Physics,
-    Scheme, ShockCapturing, Smoothing, Sph, Stabilisation, Start, StateEquation, Viscosity,
+    ArtificialViscosity, Body, Density, DensityDiffusion, DiffusionForm, Edac, Fluid, Gradient,
+    Packing, Physics, PressureForm, Scheme, ShockCapturing, Smoothing, Sph, Stabilisation, Start,
+    StateEquation, Viscosity,
 };
 
 fn start() -> Start {
@@ -45,6 +46,14 @@ fn numbers_outside_their_range() {
     let of_scheme = |scheme: Scheme| complaint(&start(), &FLUID, &physics, &scheme);
     assert!(of_scheme(Scheme { skin: 0.0, ..scheme }).contains("skin is 0"));
     assert!(of_scheme(Scheme { transport: -1.0, ..scheme }).contains("transport is -1"));
+    let said = of_scheme(Scheme { transport: 1.0, ..scheme });
+    assert!(said.contains("transport above 0 goes only with density = summation"), "{said}");
+    let plain = Scheme { gradient: Gradient::Corrected, density: Density::Summation, ..scheme };
+    assert!(of_scheme(plain).contains("gradient = corrected goes only with"));
+    let stabilisation = Stabilisation { tensile_control: true, ..Stabilisation::NONE };
+    let pressure_form = PressureForm::Antisymmetric;
+    let said = of_scheme(Scheme { stabilisation, pressure_form, ..scheme });
+    assert!(said.contains("tensile control goes only with pressure_form"), "{said}");
     let edac = Some(Edac { diffusion: f64::NAN });
     assert!(of_scheme(Scheme { edac, ..scheme }).contains("edac.diffusion is NaN"));
     let edac = Some(Edac { diffusion: 0.5 });
@@ -100,22 +109,103 @@ fn a_box_inside_out() {
 }
 
 #[test]
-fn a_particle_that_is_nowhere_and_one_that_moves_at_no_speed() {
+fn a_particle_that_is_nowhere() {
     let mut start = start();
     start.positions[7][1] = f64::NAN;
-    let (physics, scheme) = (Physics::default(), Scheme::default());
-    let begin = |start: &Start| {
-        let sph = Sph::<f64>::new(start, &FLUID, &physics, &scheme).unwrap();
-        let mut simulation = Simulation::new(sph.model, Settings::default()).unwrap();
-        simulation.begin().unwrap_err().to_string()
-    };
-    let said = begin(&start);
+    let said = begun(&start, |_| {}).unwrap_err();
     assert!(said.contains("particle 7") && said.contains("direction 1"), "{said}");
-    start.positions[7][1] = 0.05;
+}
+
+/// What comes of beginning with the default physics, with fields that a scene sets as it likes.
+fn begun(start: &Start, set: impl Fn(&mut Sph<f64>)) -> Result<(), String> {
+    let mut sph = Sph::<f64>::new(start, &FLUID, &Physics::default(), &Scheme::default()).unwrap();
+    set(&mut sph);
+    let mut simulation = Simulation::new(sph.model, Settings::default()).unwrap();
+    simulation.begin().map_err(|error| error.to_string())
+}
+
+#[test]
+fn fields_that_are_no_numbers_at_the_start() {
+    let mut start = start();
     start.velocities = vec![[0.0; 3]; start.positions.len()];
+    assert_eq!(begun(&start, |_| {}), Ok(()));
+    for (rho, words) in [
+        (f64::NAN, "particle 5 starts with density = NaN; it must be finite and above zero"),
+        (0.0, "particle 5 starts with density = 0;"),
+    ] {
+        let said = begun(&start, |sph| sph.model.columns.values_mut(sph.fields.density)[5] = rho);
+        assert!(said.clone().unwrap_err().contains(words), "{said:?}");
+    }
     start.velocities[3][0] = f64::INFINITY;
-    let said = begin(&start);
-    assert!(said.contains("largest speed inf"), "{said}");
+    let said = begun(&start, |_| {}).unwrap_err();
+    assert!(said.contains("particle 3 starts with velocity_x = inf; it must be finite"), "{said}");
+}
+
+#[test]
+fn particles_at_one_place() {
+    let said = |start: &Start| complaint(start, &FLUID, &Physics::default(), &Scheme::default());
+    let mut start = start();
+    start.positions[42] = start.positions[17];
+    let coincident = said(&start);
+    assert!(coincident.contains("particles 17 and 42 are 0.000e0 m apart"), "{coincident}");
+    assert!(coincident.contains(&format!("{:?}", start.positions[17])), "{coincident}");
+    // Across the period: 17 is at x = 0.75, y = 0.15.
+    start.positions[17] = [2e-5, 0.5, 0.0];
+    start.positions[42] = [1.0 - 3e-5, 0.5, 0.0];
+    let across = said(&start);
+    assert!(across.contains("particles 17 and 42 are 5.000e-5 m apart"), "{across}");
+    // Near, but not too near.
+    start.positions[42] = [1.0 - 2e-4, 0.5, 0.0];
+    assert!(Sph::<f64>::new(&start, &FLUID, &Physics::default(), &Scheme::default()).is_ok());
+}
+
+#[test]
+fn a_kernel_that_reaches_around_the_box_more_than_twice() {
+    let said = |smoothing_ratio| {
+        let scheme = Scheme { smoothing_ratio, ..Scheme::default() };
+        Sph::<f64>::new(&start(), &FLUID, &Physics::default(), &scheme).err().map(|e| e.to_string())
+    };
+    // The support is some three smoothing lengths, of a tenth of the box each.
+    assert_eq!(said(5.0), None);
+    let far = said(10.0).unwrap();
+    assert!(far.contains("twice the period of 1.000e0 m in direction 0"), "{far}");
+}
+
+/// A floor of `layers` of particles below y = 0 and fluid above, in a box that is periodic in x, with
+/// the particles of the floor for which `is_missing` left out.
+fn floor(layers: i32, is_missing: impl Fn([f64; 3]) -> bool) -> Start {
+    let at = |i: i32| (f64::from(i) + 0.5) * 0.1;
+    let all = (-layers..6).flat_map(|j| (0..20).map(move |i| [at(i), at(j), 0.0]));
+    let region =
+        Region { lower: vec![0.0, -2.0], upper: vec![2.0; 2], periodic: vec![true, false] };
+    Start { region, positions: all.filter(|&x| x[1] > 0.0 || !is_missing(x)).collect(), ..start() }
+}
+
+#[test]
+fn walls_with_gaps() {
+    let ground = Shape::HalfSpace { point: [0.0; 3], outward: [0.0, 1.0, 0.0] };
+    let said = |start: &Start, shape: Shape| {
+        let physics = Physics { bodies: vec![shape.into()], ..Physics::default() };
+        // Sees 0.33 m far.
+        Sph::<f64>::new(start, &FLUID, &physics, &Scheme::default()).err().map(|e| e.to_string())
+    };
+    assert_eq!(said(&floor(4, |_| false), ground), None);
+    let empty = said(&floor(0, |_| false), ground).unwrap();
+    assert!(empty.contains("body 0: no particle fills it"), "{empty}");
+    // Too few layers of particles.
+    let shallow = said(&floor(1, |_| false), ground).unwrap();
+    assert!(shallow.contains("body 0: there is a gap at [0.05, -0.2"), "{shallow}");
+    // A hole right under the surface.
+    let hole = |[x, y, _]: [f64; 3]| (x - 1.05).abs() < 0.16 && y > -0.21;
+    let pitted = said(&floor(4, hole), ground).unwrap();
+    assert!(pitted.contains("body 0: there is a gap at [1.05"), "{pitted}");
+    // A plate thinner than the fluid above sees.
+    let plate = Shape::Cuboid {
+        low: [f64::NEG_INFINITY, -0.1, f64::NEG_INFINITY],
+        high: [f64::INFINITY, 0.0, f64::INFINITY],
+    };
+    let thin = said(&floor(1, |_| false), plate).unwrap();
+    assert!(thin.contains("body 0: it is too thin at [0.05, -0.2"), "{thin}");
 }
 
 #[test]
@@ -136,6 +226,8 @@ fn choices_that_do_not_make_a_gas() {
         "goes only with a smoothing length that follows the density",
     );
     said(&gas, &Physics::default(), &scheme, "goes only with the energy equation");
+    let corrected = Scheme { gradient: Gradient::Corrected, ..scheme };
+    said(&gas, &physics, &corrected, "goes only with gradient = kernel");
     let viscous = Physics { viscosity: Some(Viscosity::Morris), ..physics.clone() };
     said(&gas, &viscous, &scheme, "goes only with no laminar viscosity");
     let shocks = ShockCapturing { viscosity: -1.0, ..ShockCapturing::default() };

@@ -9,7 +9,7 @@ use finegrain_sph::{Scheme, Viscosity, measure};
 #[test]
 fn the_closest_pair_is_that_of_all_pairs() {
     for dims in [2, 3] {
-        let (mut simulation, fields, _) = flow::flow::<f64>(
+        let (mut simulation, fields, _) = flow::flow::<f64, f64>(
             dims,
             Viscosity::Morris,
             &Scheme::default(),

@@ -8,8 +8,8 @@ use finegrain_framework::shape::Shape;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Columns, Real};
 use finegrain_sph::{
-    Fluid, Packing, Physics, Scheme, ShockCapturing, Sph, Start, StateEquation, Viscosity,
-    WallVelocity,
+    Fluid, Gradient, Packing, Physics, Scheme, ShockCapturing, Sph, Start, StateEquation,
+    Viscosity, WallVelocity,
 };
 
 /// Bytes a particle in all columns, and their names.
@@ -40,20 +40,34 @@ fn cost_of<T: Real>(physics: &Physics, scheme: &Scheme) -> (usize, BTreeSet<Stri
 
 /// Checks that `physics` adds the columns `names`, to what there is without.
 fn adds(physics: &Physics, names: &[&str]) {
+    adds_with(physics, &Scheme::default(), names);
+}
+
+/// Checks that `physics` and `scheme` add the columns `names`, to what there is without.
+fn adds_with(physics: &Physics, scheme: &Scheme, names: &[&str]) {
     let (plain, known) = cost_of::<f64>(&Physics::default(), &Scheme::default());
-    let (bytes, all) = cost_of::<f64>(physics, &Scheme::default());
+    let (bytes, all) = cost_of::<f64>(physics, scheme);
     let new: Vec<_> = all.difference(&known).map(String::as_str).collect();
     assert_eq!(new, names);
     assert_eq!(bytes - plain, 8 * names.len());
-    let (bytes, all) = (cost_of::<f32>(physics, &Scheme::default()).0, 4 * all.len());
+    let (bytes, all) = (cost_of::<f32>(physics, scheme).0, 4 * all.len());
     assert_eq!(bytes, all, "single precision is half of it but for the identity");
 }
 
 #[test]
 fn nothing_more_than_mass_and_momentum_by_default() {
     let (bytes, names) = cost_of::<f64>(&Physics::default(), &Scheme::default());
-    let nothing =
-        ["energy", "stress", "wall", "sound_speed", "smoothing_length", "grad_h", "signal"];
+    let nothing = [
+        "energy",
+        "stress",
+        "wall",
+        "sound_speed",
+        "smoothing_length",
+        "grad_h",
+        "signal",
+        "moment",
+        "correction",
+    ];
     for name in nothing {
         assert!(!names.iter().any(|column| column.contains(name)), "{name}");
     }
@@ -72,7 +86,16 @@ fn energy() {
 fn viscosity() {
     let of = |form| Physics { viscosity: Some(form), ..Physics::default() };
     adds(&of(Viscosity::Morris), &[]);
+    adds(&of(Viscosity::Monaghan), &[]);
     adds(&of(Viscosity::StrainRate), &["stress_term_0", "stress_term_1", "stress_term_2"]);
+}
+
+#[test]
+fn corrected_gradient() {
+    let scheme = Scheme { gradient: Gradient::Corrected, ..Scheme::default() };
+    let columns =
+        ["correction_0", "correction_1", "correction_2", "moment_0", "moment_1", "moment_2"];
+    adds_with(&Physics::default(), &scheme, &columns);
 }
 
 #[test]

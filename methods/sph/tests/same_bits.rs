@@ -19,7 +19,7 @@ fn hash<T: Real>(mut simulation: Simulation<Cells<T>>) -> u64 {
 }
 
 fn same_bits<T: Real>(dims: usize, viscosity: Viscosity, scheme: &Scheme) {
-    same_bits_of::<T>(|settings| flow::flow(dims, viscosity, scheme, true, settings).0);
+    same_bits_of::<T>(|settings| flow::flow::<T, T>(dims, viscosity, scheme, true, settings).0);
 }
 
 fn same_bits_of_gas<T: Real>(dims: usize) {
@@ -44,7 +44,7 @@ fn same_bits_of<T: Real>(start: impl Fn(Settings) -> Simulation<Cells<T>>) {
 
 #[test]
 fn one_sweep_in_2d() {
-    same_bits::<f64>(2, Viscosity::Morris, &Scheme::default());
+    same_bits::<f64>(2, Viscosity::Monaghan, &Scheme::default());
 }
 
 #[test]
@@ -60,6 +60,14 @@ fn two_sweeps_in_a_thin_3d_box() {
 #[test]
 fn single_precision() {
     same_bits::<f32>(3, Viscosity::Morris, &Scheme::default());
+}
+
+#[test]
+fn mixed_precision() {
+    let scheme = flow::edac();
+    same_bits_of::<f64>(|settings| {
+        flow::flow::<f32, f64>(2, Viscosity::Adami, &scheme, true, settings).0
+    });
 }
 
 #[test]

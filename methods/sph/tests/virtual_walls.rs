@@ -58,7 +58,7 @@ fn accelerations(viscosity: Viscosity) -> Vec<(f64, [f64; 2])> {
 
 #[test]
 fn linear_shear_feels_no_force() {
-    for viscosity in [Viscosity::Morris, Viscosity::StrainRate] {
+    for viscosity in [Viscosity::Morris, Viscosity::StrainRate, Viscosity::Monaghan] {
         // What one neighbour's share is of the order of.
         let scale = VISCOSITY * SHEAR / SPACING;
         let accelerations = accelerations(viscosity);

@@ -144,7 +144,7 @@ fn drag(physics: Physics, scheme: &Scheme, surface_velocity: f64) -> [f64; 2] {
 
 #[test]
 fn a_surface_that_moves_with_the_shear_has_no_drag() {
-    for viscosity in [Viscosity::Morris, Viscosity::StrainRate] {
+    for viscosity in [Viscosity::Morris, Viscosity::StrainRate, Viscosity::Monaghan] {
         let physics = || Physics { viscosity: Some(viscosity), ..Physics::default() };
         let linear = Scheme { wall_velocity: WallVelocity::Linear, ..adami() };
         let at_rest = drag(physics(), &linear, 0.0)[0];
@@ -161,7 +161,7 @@ fn a_surface_that_moves_with_the_shear_has_no_drag() {
 
 #[test]
 fn there_is_no_drag_where_the_fluid_slips() {
-    for viscosity in [Viscosity::Morris, Viscosity::StrainRate] {
+    for viscosity in [Viscosity::Morris, Viscosity::StrainRate, Viscosity::Monaghan] {
         for scheme in [adami(), Scheme { wall_velocity: WallVelocity::Linear, ..adami() }] {
             let physics =
                 || Physics { viscosity: Some(viscosity), slip: Slip::Free, ..Physics::default() };

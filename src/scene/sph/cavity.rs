@@ -44,10 +44,10 @@ pub fn parameters() -> Vec<Parameter> {
 
 prepare_with!(build);
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, CavityFlow>, SceneError> {
+) -> Result<SphScene<T, P, CavityFlow>, SceneError> {
     let scene = Cavity::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let thickness = LAYERS * spacing;
@@ -91,13 +91,13 @@ struct CavityFlow {
     scene: Cavity,
 }
 
-impl<T: Real> Flow<T> for CavityFlow {
+impl<T: Real, P: Real> Flow<T, P> for CavityFlow {
     /// By then the eddies have turned often enough that the extrema change by less than a percent.
     fn end_time(&self) -> f64 {
         8.0 + 0.04 * self.scene.reynolds
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let fields = fields.clone();
         run.monitor("flow", Every::Time(0.1), ["kinetic_energy", "largest_speed"], move |whole| {
             let energy = measure::totals(whole, &fields, mass).kinetic_energy;
@@ -110,8 +110,8 @@ impl<T: Real> Flow<T> for CavityFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         _: f64,
     ) {
         let count = (4.0 * self.scene.resolution) as usize;
@@ -122,7 +122,7 @@ impl<T: Real> Flow<T> for CavityFlow {
         let columns = simulation.columns();
         let u = profile::velocities(columns, fields, &upright, spacing, None);
         let v = profile::velocities(columns, fields, &across, spacing, None);
-        let is_steady = summary.time >= Flow::<T>::end_time(self);
+        let is_steady = summary.time >= Flow::<T, P>::end_time(self);
         let reference = self.scene.reference().filter(|_| is_steady);
         let least = |v: &[[f64; 2]], a: usize| v.iter().map(|v| v[a]).fold(f64::INFINITY, f64::min);
         let most = v.iter().map(|v| v[1]).fold(f64::NEG_INFINITY, f64::max);

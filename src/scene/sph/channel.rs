@@ -61,16 +61,17 @@ fn prepare(
     precision: Precision,
 ) -> Result<Box<dyn Prepared>, SceneError> {
     Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(drive, parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(drive, parameters, precision)?),
+        Precision::F32 => Box::new(build::<f32, f32>(drive, parameters, precision)?),
+        Precision::F64 => Box::new(build::<f64, f64>(drive, parameters, precision)?),
+        Precision::Mixed => Box::new(build::<f32, f64>(drive, parameters, precision)?),
     })
 }
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     drive: Drive,
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, ChannelFlow>, SceneError> {
+) -> Result<SphScene<T, P, ChannelFlow>, SceneError> {
     let scene = Channel::new(drive, parameters);
     let spacing = GAP / scene.resolution;
     let thickness = LAYERS * spacing;
@@ -119,12 +120,12 @@ struct ChannelFlow {
     scene: Channel,
 }
 
-impl<T: Real> Flow<T> for ChannelFlow {
+impl<T: Real, P: Real> Flow<T, P> for ChannelFlow {
     fn end_time(&self) -> f64 {
         TIME
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let fields = fields.clone();
         let columns = ["velocity_x", "velocity_y", "largest_speed"];
         run.monitor("flow", Every::Time(0.02 * TIME), columns, move |whole| {
@@ -140,8 +141,8 @@ impl<T: Real> Flow<T> for ChannelFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         _: f64,
     ) {
         if summary.time <= 0.0 {

@@ -50,10 +50,10 @@ pub fn parameters() -> Vec<Parameter> {
 
 prepare_with!(build);
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, CylinderFlow>, SceneError> {
+) -> Result<SphScene<T, P, CylinderFlow>, SceneError> {
     let scene = Cylinder::new(parameters);
     let spacing = SIDE / scene.resolution;
     let packing = match (parameters.choice("packing"), scene.dims) {
@@ -144,7 +144,11 @@ impl CylinderFlow {
 
     /// L2 of the difference to the reference's velocities over the L2 of these, where there are
     /// some.
-    fn profile_error<T: Real>(&self, columns: &Columns, fields: &Fields<T>) -> Option<f64> {
+    fn profile_error<T: Real, P: Real>(
+        &self,
+        columns: &Columns,
+        fields: &Fields<T, P>,
+    ) -> Option<f64> {
         let stations = self.scene.reference_profiles();
         if stations.is_empty() {
             return None;
@@ -165,14 +169,14 @@ impl CylinderFlow {
     }
 }
 
-impl<T: Real> Flow<T> for CylinderFlow {
+impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
     fn end_time(&self) -> f64 {
         30.0 * self.relaxation_time()
     }
 
     /// Steady when the mean velocity has twice changed by less than a part in 10^4 in a third of the
     /// relaxation time: it is then within about 3 parts in 10^4 of its final value.
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let every = Every::Time(self.relaxation_time() / 3.0);
         let columns = ["velocity_x", "velocity_y", "velocity_z", "kinetic_energy", "largest_speed"];
         let (fields, volume) = (fields.clone(), self.volume);
@@ -198,8 +202,8 @@ impl<T: Real> Flow<T> for CylinderFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         mass: f64,
     ) {
         let [mut x, y, z] =

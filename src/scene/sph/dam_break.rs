@@ -31,10 +31,10 @@ pub fn parameters() -> Vec<Parameter> {
 
 prepare_with!(build);
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, DamFlow>, SceneError> {
+) -> Result<SphScene<T, P, DamFlow>, SceneError> {
     let mut scene = DamBreak::new(parameters);
     let spacing = WIDTH / scene.resolution;
     scene.tank = tank::fit(scene.tank, spacing);
@@ -42,7 +42,7 @@ fn build<T: Real>(
     let scheme = tank::scheme(parameters, scene.speed());
     let is_filled = |[x, y, _]: [f64; 3]| x < WIDTH && y < HEIGHT;
     let start = tank::start(&scene.tank, spacing, &scheme, is_filled);
-    let mut sph = Sph::<T>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
+    let mut sph = Sph::<T, P>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
     // Walls take theirs from the water.
     free_surface::set_pressure(&mut sph, &fluid, &start.positions, |[x, y, z]| {
         let is_water = x > 0.0 && y > 0.0 && is_filled([x, y, z]);
@@ -57,13 +57,13 @@ struct DamFlow {
     fluid: Fluid,
 }
 
-impl<T: Real> Flow<T> for DamFlow {
+impl<T: Real, P: Real> Flow<T, P> for DamFlow {
     /// After the water has hit the far wall.
     fn end_time(&self) -> f64 {
         6.0 * self.scene.time()
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let every = Every::Time(0.02 * self.scene.time());
         tank::monitor(run, every, fields, self.fluid, mass, self.scene.tank)
     }
@@ -75,13 +75,13 @@ impl<T: Real> Flow<T> for DamFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        _: &mut Simulation<Cells<T>>,
-        _: &Fields<T>,
+        _: &mut Simulation<Cells<P>>,
+        _: &Fields<T, P>,
         _: f64,
     ) {
         let water = &summary.histories[1];
         if let Some(front) = water.column("front") {
-            let half = 0.5 * Flow::<T>::spacing(self);
+            let half = 0.5 * Flow::<T, P>::spacing(self);
             let times = water.times().iter().map(|t| t / self.scene.time());
             let front: Vec<_> = times.zip(front.map(|x| (x + half) / WIDTH)).collect();
             if let Some(found) = DamBreak::front_error(&front, GATE_GONE) {

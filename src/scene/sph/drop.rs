@@ -59,16 +59,17 @@ fn prepare(
 ) -> Result<Box<dyn Prepared>, SceneError> {
     let description = super::description(name, parameters, precision);
     Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(drop, parameters, description)?),
-        Precision::F64 => Box::new(build::<f64>(drop, parameters, description)?),
+        Precision::F32 => Box::new(build::<f32, f32>(drop, parameters, description)?),
+        Precision::F64 => Box::new(build::<f64, f64>(drop, parameters, description)?),
+        Precision::Mixed => Box::new(build::<f32, f64>(drop, parameters, description)?),
     })
 }
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     drop: Drop,
     parameters: &Parameters,
     description: String,
-) -> Result<SphScene<T, DropFlow>, SceneError> {
+) -> Result<SphScene<T, P, DropFlow>, SceneError> {
     let spacing = drop.radius / drop.resolution;
     // The centre is between four particles.
     let half = drop.resolution as i32;
@@ -103,7 +104,7 @@ fn build<T: Real>(
         ..Physics::default()
     };
     let scheme = free_surface::scheme(parameters, speed);
-    let mut sph = Sph::<T>::new(&start, &fluid, &physics, &scheme)?;
+    let mut sph = Sph::<T, P>::new(&start, &fluid, &physics, &scheme)?;
     free_surface::set_pressure(&mut sph, &fluid, &start.positions, |x| drop.pressure(x));
     Ok(SphScene { sph, flow: DropFlow { drop, fluid }, description })
 }
@@ -114,7 +115,7 @@ struct DropFlow {
 }
 
 /// Semi-axes of the ellipse with the particles' second moments.
-fn semi_axes<T: Real>(whole: &mut Whole<'_, Cells<T>>, fields: &Fields<T>) -> [f64; 2] {
+fn semi_axes<T: Real, P: Real>(whole: &mut Whole<'_, Cells<P>>, fields: &Fields<T, P>) -> [f64; 2] {
     let sums = whole.sum(|near| {
         let mut sums = [0.0; 2];
         for (sum, &position) in sums.iter_mut().zip(&fields.position) {
@@ -127,15 +128,15 @@ fn semi_axes<T: Real>(whole: &mut Whole<'_, Cells<T>>, fields: &Fields<T>) -> [f
     sums.map(|sum| 2.0 * (sum / points).sqrt())
 }
 
-impl<T: Real> Flow<T> for DropFlow {
+impl<T: Real, P: Real> Flow<T, P> for DropFlow {
     /// When the elliptic drop is twice as long as at the beginning, about; two periods of the
     /// oscillating one.
     fn end_time(&self) -> f64 {
         if self.drop.frequency > 0.0 { 2.02 * self.drop.period() } else { 0.0076 }
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
-        let every = Every::Time(Flow::<T>::end_time(self) / 400.0);
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
+        let every = Every::Time(Flow::<T, P>::end_time(self) / 400.0);
         let (drop, watched) = (self.drop, fields.clone());
         let run = free_surface::monitor_energy(run, every, fields, self.fluid, mass, move |x| {
             drop.potential(x)
@@ -154,8 +155,8 @@ impl<T: Real> Flow<T> for DropFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         _: f64,
     ) {
         let exact = self.drop.ellipse(summary.time).semi_axes;

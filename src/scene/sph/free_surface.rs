@@ -75,8 +75,8 @@ pub(super) fn state_equation(parameters: &Parameters) -> StateEquation {
 }
 
 /// Gives particles the density that goes with a pressure, so that they start without sound.
-pub(super) fn set_pressure<T: Real>(
-    sph: &mut finegrain_sph::Sph<T>,
+pub(super) fn set_pressure<T: Real, P: Real>(
+    sph: &mut finegrain_sph::Sph<T, P>,
     fluid: &Fluid,
     positions: &[[f64; 3]],
     pressure: impl Fn([f64; 3]) -> f64,
@@ -89,14 +89,14 @@ pub(super) fn set_pressure<T: Real>(
 }
 
 /// Monitors energy, `potential` being that of the body force per mass, J/kg.
-pub(super) fn monitor_energy<T: Real>(
-    run: Run<Cells<T>>,
+pub(super) fn monitor_energy<T: Real, P: Real>(
+    run: Run<Cells<P>>,
     every: Every,
-    fields: &Fields<T>,
+    fields: &Fields<T, P>,
     fluid: Fluid,
     mass: f64,
     potential: impl Fn([f64; 3]) -> f64 + Send + Sync + Clone + 'static,
-) -> Run<Cells<T>> {
+) -> Run<Cells<P>> {
     let fields = fields.clone();
     let columns = ["kinetic_energy", "potential_energy", "elastic_energy", "total_energy"];
     run.monitor("energy", every, columns, move |whole| {
@@ -127,9 +127,9 @@ pub(super) fn judge_energy(report: &mut Report, histories: &[History], scale: f6
 }
 
 /// Mean pressure of the fluid within `radius` of a point, Pa; NaN if there is none.
-pub(super) fn pressure_near<T: Real>(
-    whole: &mut Whole<'_, Cells<T>>,
-    fields: &Fields<T>,
+pub(super) fn pressure_near<T: Real, P: Real>(
+    whole: &mut Whole<'_, Cells<P>>,
+    fields: &Fields<T, P>,
     fluid: &Fluid,
     point: [f64; 3],
     radius: f64,
@@ -155,9 +155,9 @@ pub(super) fn pressure_near<T: Real>(
 
 /// Area of the holes in a flow in the plane over the area of the fluid: what is further than
 /// `radius` from all particles and not connected to the outside.
-pub(super) fn voids<T: Real>(
-    simulation: &Simulation<Cells<T>>,
-    fields: &Fields<T>,
+pub(super) fn voids<T: Real, P: Real>(
+    simulation: &Simulation<Cells<P>>,
+    fields: &Fields<T, P>,
     spacing: f64,
     radius: f64,
 ) -> f64 {

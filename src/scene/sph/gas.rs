@@ -40,14 +40,14 @@ pub(super) const PARAMETERS: [Parameter; 6] = [
 
 /// A gas of particles of one mass; `thinnest` is the spacing of the thinnest gas, m, and `energies`
 /// are the specific internal energies at the start.
-pub(super) fn build<T: Real>(
+pub(super) fn build<T: Real, P: Real>(
     parameters: &Parameters,
     start: &Start,
     heat_ratio: f64,
     thinnest: f64,
     densities: &[f64],
     energies: &[f64],
-) -> Result<Sph<T>, SceneError> {
+) -> Result<Sph<T, P>, SceneError> {
     let fluid = Fluid {
         density: 1.0,
         sound_speed: 1.0,
@@ -72,7 +72,7 @@ pub(super) fn build<T: Real>(
         courant_number: parameters.number("courant"),
         ..Scheme::default()
     };
-    let mut sph = Sph::<T>::new(start, &fluid, &physics, &scheme)?;
+    let mut sph = Sph::<T, P>::new(start, &fluid, &physics, &scheme)?;
     let columns = &mut sph.model.columns;
     for (density, &given) in columns.values_mut(sph.fields.density).iter_mut().zip(densities) {
         *density = T::of(given);
@@ -86,12 +86,12 @@ pub(super) fn build<T: Real>(
 }
 
 /// Monitors energies and momentum.
-pub(super) fn observe<T: Real>(
-    run: Run<Cells<T>>,
-    fields: &Fields<T>,
+pub(super) fn observe<T: Real, P: Real>(
+    run: Run<Cells<P>>,
+    fields: &Fields<T, P>,
     mass: f64,
     every: f64,
-) -> Run<Cells<T>> {
+) -> Run<Cells<P>> {
     let fields = fields.clone();
     let columns = ["total_energy", "kinetic_energy", "internal_energy", "momentum_x"];
     run.monitor("energy", Every::Time(every), columns, move |whole| {
@@ -103,11 +103,11 @@ pub(super) fn observe<T: Real>(
 
 /// Adds `energy_drift`: the largest change of the total energy at any time, relative to that at the
 /// beginning.
-pub(super) fn judge_energy<T: Real>(
+pub(super) fn judge_energy<T: Real, P: Real>(
     report: &mut Report,
     summary: &Summary,
-    simulation: &mut Simulation<Cells<T>>,
-    fields: &Fields<T>,
+    simulation: &mut Simulation<Cells<P>>,
+    fields: &Fields<T, P>,
     mass: f64,
 ) {
     let totals = measure::totals(&mut simulation.whole(), fields, mass);

@@ -25,10 +25,10 @@ pub fn parameters() -> Vec<Parameter> {
 
 prepare_with!(build);
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, TankFlow>, SceneError> {
+) -> Result<SphScene<T, P, TankFlow>, SceneError> {
     let mut scene = HydrostaticTank::new(parameters);
     let spacing = DEPTH / scene.resolution;
     scene.tank = tank::fit(scene.tank, spacing);
@@ -37,7 +37,7 @@ fn build<T: Real>(
     let mut start = tank::start(&scene.tank, spacing, &scheme, |x| x[1] < DEPTH);
     let positions = start.positions.clone();
     tank::settle(&mut start, &scene.tank, DEPTH, fluid.sound_speed);
-    let mut sph = Sph::<T>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
+    let mut sph = Sph::<T, P>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
     free_surface::set_pressure(&mut sph, &fluid, &positions, |x| scene.pressure(x[1].min(DEPTH)));
     let description = super::description("hydrostatic-tank", parameters, precision);
     Ok(SphScene { sph, flow: TankFlow { scene, fluid }, description })
@@ -48,12 +48,12 @@ struct TankFlow {
     fluid: Fluid,
 }
 
-impl<T: Real> Flow<T> for TankFlow {
+impl<T: Real, P: Real> Flow<T, P> for TankFlow {
     fn end_time(&self) -> f64 {
         50.0 * self.scene.time()
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let every = Every::Time(0.1 * self.scene.time());
         tank::monitor(run, every, fields, self.fluid, mass, self.scene.tank)
     }
@@ -65,8 +65,8 @@ impl<T: Real> Flow<T> for TankFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         _: f64,
     ) {
         let water = &summary.histories[1];

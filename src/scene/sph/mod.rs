@@ -1,7 +1,7 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
-/// Defines `prepare`, which makes a scene ready by a function `build::<T>(parameters, precision)`, in
-/// the scalar type asked for.
+/// Defines `prepare`, which makes a scene ready by a function `build::<T, P>(parameters, precision)`,
+/// in the scalar types asked for: `P` for positions and `T` for all else.
 macro_rules! prepare_with {
     ($build:ident) => {
         /// Prepares the scene.
@@ -11,8 +11,9 @@ macro_rules! prepare_with {
         ) -> Result<Box<dyn $crate::scene::Prepared>, $crate::scene::SceneError> {
             use $crate::scene::Precision;
             Ok(match precision {
-                Precision::F32 => Box::new($build::<f32>(parameters, precision)?),
-                Precision::F64 => Box::new($build::<f64>(parameters, precision)?),
+                Precision::F32 => Box::new($build::<f32, f32>(parameters, precision)?),
+                Precision::F64 => Box::new($build::<f64, f64>(parameters, precision)?),
+                Precision::Mixed => Box::new($build::<f32, f64>(parameters, precision)?),
             })
         }
     };
@@ -41,8 +42,8 @@ use finegrain_framework::run::{Dump, Every, Run, Summary, Until};
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Integrator, Real, Simulation, State};
 use finegrain_sph::{
-    Density, Edac, Fields, PressureForm, Scheme, SmoothingFunction, Sph, StateEquation, Viscosity,
-    WallPressure, WallVelocity, measure,
+    Density, Edac, Fields, Gradient, PressureForm, Scheme, SmoothingFunction, Sph, StateEquation,
+    Viscosity, WallPressure, WallVelocity, measure,
 };
 
 use super::parameter::{Parameter, Parameters};
@@ -51,7 +52,7 @@ use super::{Orders, Prepared, Report, SceneError};
 use crate::figure::{Axis, Field};
 
 /// Parameters of the discretisation that scenes of all liquids share.
-const LIQUID_PARAMETERS: [Parameter; 5] = [
+const LIQUID_PARAMETERS: [Parameter; 7] = [
     Parameter::choice(
         "kernel",
         &[
@@ -73,6 +74,18 @@ const LIQUID_PARAMETERS: [Parameter; 5] = [
     ),
     Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
     Parameter::number("mach", 0.1, [1e-4, 0.5], "", "largest speed over sound speed, about"),
+    Parameter::choice(
+        "pressure_form",
+        &["symmetric", "density-weighted", "antisymmetric"],
+        "eq. I.2 of Holmes et al. (2011), Adami et al. (2012), or differences, which do not conserve \
+         momentum",
+    ),
+    Parameter::choice(
+        "gradient",
+        &["kernel", "corrected"],
+        "in velocity gradients and the antisymmetric pressure gradient: of the kernel, or exact for \
+         linear fields (Bonet & Lok 1999)",
+    ),
 ];
 
 /// What the parameters of all liquids say about the discretisation.
@@ -82,16 +95,26 @@ fn liquid_scheme(parameters: &Parameters) -> Scheme {
         smoothing_ratio: parameters.number("smoothing_ratio"),
         integrator: parameters.choice("integrator").parse().unwrap_or(Integrator::Leapfrog),
         courant_number: parameters.number("courant"),
+        pressure_form: match parameters.choice("pressure_form") {
+            "density-weighted" => PressureForm::DensityWeighted,
+            "antisymmetric" => PressureForm::Antisymmetric,
+            _ => PressureForm::Symmetric,
+        },
+        gradient: match parameters.choice("gradient") {
+            "corrected" => Gradient::Corrected,
+            _ => Gradient::Kernel,
+        },
         ..Scheme::default()
     }
 }
 
 /// Further parameters of the discretisation that scenes without a free surface share.
-const PARAMETERS: [Parameter; 7] = [
+const PARAMETERS: [Parameter; 6] = [
     Parameter::choice(
         "viscous_form",
-        &["morris", "strain-rate", "adami"],
-        "Morris et al. (1997), eq. I.2 of Holmes et al. (2011) or Adami et al. (2012)",
+        &["morris", "strain-rate", "adami", "monaghan"],
+        "Morris et al. (1997), eq. I.2 of Holmes et al. (2011), Adami et al. (2012), or Monaghan \
+         (2005), which conserves angular momentum",
     ),
     Parameter::choice(
         "density",
@@ -102,11 +125,6 @@ const PARAMETERS: [Parameter; 7] = [
         "pressure",
         &["state-equation", "edac"],
         "pressure follows from density, or evolves with diffusion (Ramachandran & Puri 2019)",
-    ),
-    Parameter::choice(
-        "pressure_form",
-        &["symmetric", "density-weighted"],
-        "eq. I.2 of Holmes et al. (2011) or Adami et al. (2012)",
     ),
     Parameter::number(
         "edac_diffusion",
@@ -120,7 +138,8 @@ const PARAMETERS: [Parameter; 7] = [
         0.0,
         [0.0, 20.0],
         "",
-        "strength of the transport velocity (Adami et al. 2013); 0 is none, 1 is theirs",
+        "strength of the transport velocity (Adami et al. 2013), with density=summation; 0 is none, 1 \
+         is theirs",
     ),
     Parameter::number(
         "background_pressure",
@@ -140,10 +159,6 @@ fn scheme(parameters: &Parameters) -> Scheme {
         },
         edac: (parameters.choice("pressure") == "edac")
             .then(|| Edac { diffusion: parameters.number("edac_diffusion") }),
-        pressure_form: match parameters.choice("pressure_form") {
-            "density-weighted" => PressureForm::DensityWeighted,
-            _ => PressureForm::Symmetric,
-        },
         transport: parameters.number("transport"),
         ..liquid_scheme(parameters)
     }
@@ -221,6 +236,7 @@ fn viscosity(parameters: &Parameters) -> Viscosity {
     match parameters.choice("viscous_form") {
         "strain-rate" => Viscosity::StrainRate,
         "adami" => Viscosity::Adami,
+        "monaghan" => Viscosity::Monaghan,
         _ => Viscosity::Morris,
     }
 }
@@ -230,20 +246,20 @@ fn state_equation(parameters: &Parameters) -> StateEquation {
 }
 
 /// What a scene adds to a run of SPH.
-trait Flow<T: Real> {
+trait Flow<T: Real, P: Real> {
     /// When it ends if nobody says otherwise, s.
     fn end_time(&self) -> f64;
 
     /// Adds monitors and stop criteria.
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>>;
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>>;
 
     /// Draws results from the histories and the final state.
     fn judge(
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         mass: f64,
     );
 
@@ -254,20 +270,20 @@ trait Flow<T: Real> {
     fn spacing(&self) -> f64;
 
     /// The picture of the end: by default of the speed.
-    fn picture(&self, simulation: &Simulation<Cells<T>>, fields: &Fields<T>) -> Picture {
+    fn picture(&self, simulation: &Simulation<Cells<P>>, fields: &Fields<T, P>) -> Picture {
         picture(simulation, fields, self.title(), self.spacing()).into()
     }
 }
 
 /// A scene with its SPH model.
-struct SphScene<T: Real, F> {
-    sph: Sph<T>,
+struct SphScene<T: Real, P: Real, F> {
+    sph: Sph<T, P>,
     flow: F,
     /// What is modelled, for checkpoints.
     description: String,
 }
 
-impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
+impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
     fn points(&self) -> usize {
         self.sph.model.columns.points()
     }
@@ -325,27 +341,28 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
 }
 
 /// Speed in the plane, or in 3-D in a slice through the middle.
-fn picture<T: Real>(
-    simulation: &Simulation<Cells<T>>,
-    fields: &Fields<T>,
+fn picture<T: Real, P: Real>(
+    simulation: &Simulation<Cells<P>>,
+    fields: &Fields<T, P>,
     title: String,
     spacing: f64,
 ) -> Field {
     let columns = simulation.columns();
     let region = simulation.domain().region();
     let value = |handle: State<T>, i: usize| columns.values(handle)[i].as_f64();
+    let place = |handle: State<P>, i: usize| columns.values(handle)[i].as_f64();
     let mut points = Vec::new();
     for i in 0..columns.points() {
         if let Some(&z) = fields.position.get(2) {
             let middle = 0.5 * (region.lower[2] + region.upper[2]);
-            if (value(z, i) - middle).abs() > 0.5 * spacing {
+            if (place(z, i) - middle).abs() > 0.5 * spacing {
                 continue;
             }
         }
         if fields.wall_depth.is_some_and(|depth| value(depth, i) > 0.0) {
             continue;
         }
-        let at = [value(fields.position[0], i), value(fields.position[1], i)];
+        let at = [place(fields.position[0], i), place(fields.position[1], i)];
         let squared: f64 = fields.velocity.iter().map(|&v| value(v, i).powi(2)).sum();
         points.push((at, squared.sqrt()));
     }

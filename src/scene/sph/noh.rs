@@ -3,7 +3,7 @@
 use finegrain_framework::run::{Run, Summary};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
-use finegrain_framework::{Real, Simulation, State};
+use finegrain_framework::{Real, Simulation};
 use finegrain_sph::{Fields, Packing, Start};
 
 use super::{Flow, SphScene, gas};
@@ -24,10 +24,10 @@ prepare_with!(build);
 /// 0.2 m: what is wrong at the edge does not get there, since gas comes in faster than sound.
 const EXTENT: f64 = TIME + 0.5;
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, Implosion>, SceneError> {
+) -> Result<SphScene<T, P, Implosion>, SceneError> {
     let scene = Noh::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let (positions, particle_volume) = if scene.dims == 1 {
@@ -72,29 +72,29 @@ struct Implosion {
 
 impl Implosion {
     /// Distance from the origin and density of the particles up to `most`.
-    fn particles<T: Real>(
-        simulation: &Simulation<Cells<T>>,
-        fields: &Fields<T>,
+    fn particles<T: Real, P: Real>(
+        simulation: &Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         most: f64,
     ) -> Vec<[f64; 2]> {
         let columns = simulation.columns();
-        let value = |handle: State<T>, i: usize| columns.values(handle)[i].as_f64();
         (0..columns.points())
             .map(|i| {
-                let squared: f64 = fields.position.iter().map(|&x| value(x, i).powi(2)).sum();
-                [squared.sqrt(), value(fields.density, i)]
+                let squares =
+                    fields.position.iter().map(|&x| columns.values(x)[i].as_f64().powi(2));
+                [squares.sum::<f64>().sqrt(), columns.values(fields.density)[i].as_f64()]
             })
             .filter(|&[r, _]| r < most)
             .collect()
     }
 }
 
-impl<T: Real> Flow<T> for Implosion {
+impl<T: Real, P: Real> Flow<T, P> for Implosion {
     fn end_time(&self) -> f64 {
         TIME
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         gas::observe(run, fields, mass, 0.02)
     }
 
@@ -105,8 +105,8 @@ impl<T: Real> Flow<T> for Implosion {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         mass: f64,
     ) {
         gas::judge_energy(report, summary, simulation, fields, mass);
@@ -146,10 +146,10 @@ impl<T: Real> Flow<T> for Implosion {
         self.spacing
     }
 
-    fn picture(&self, simulation: &Simulation<Cells<T>>, fields: &Fields<T>) -> Picture {
+    fn picture(&self, simulation: &Simulation<Cells<P>>, fields: &Fields<T, P>) -> Picture {
         let time = simulation.clock().time();
         let points = Self::particles(simulation, fields, 2.0 * self.scene.shock(time));
-        let title = format!("{}, t = {time:.3} s", <Self as Flow<T>>::title(self));
+        let title = format!("{}, t = {time:.3} s", <Self as Flow<T, P>>::title(self));
         let x = Axis::new("distance from the origin").unit("m");
         gas::chart(title, x, points, |r| self.scene.density(r, time)).into()
     }

@@ -6,9 +6,9 @@ use finegrain_sph::Fields;
 /// Velocity at each of `points`: a linear fit to the particles of the fluid within three spacings,
 /// weighted with a Gaussian. NaN where there are too few. With the sides of a cell, the particles
 /// are those of its periodic images, too.
-pub fn velocities<T: Real>(
+pub fn velocities<T: Real, P: Real>(
     columns: &Columns,
-    fields: &Fields<T>,
+    fields: &Fields<T, P>,
     points: &[[f64; 2]],
     spacing: f64,
     cell: Option<[f64; 2]>,
@@ -20,7 +20,7 @@ pub fn velocities<T: Real>(
             continue;
         }
         let value = |column: State<T>| columns.values(column)[i].as_f64();
-        let at = [value(fields.position[0]), value(fields.position[1])];
+        let at = [0, 1].map(|a| columns.values(fields.position[a])[i].as_f64());
         let v = [value(fields.velocity[0]), value(fields.velocity[1])];
         for ((matrix, right), point) in sums.iter_mut().zip(points) {
             let mut x = [at[0] - point[0], at[1] - point[1]];

@@ -28,10 +28,10 @@ pub fn parameters() -> Vec<Parameter> {
 
 prepare_with!(build);
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, PatchFlow>, SceneError> {
+) -> Result<SphScene<T, P, PatchFlow>, SceneError> {
     let scene = RotatingPatch::new(parameters);
     let spacing = SIDE / scene.resolution;
     let lattice = Packing::Square.fit([SIDE; 3], spacing)?;
@@ -57,7 +57,7 @@ fn build<T: Real>(
         state_equation: free_surface::state_equation(parameters),
     };
     let scheme = free_surface::scheme(parameters, speed);
-    let mut sph = Sph::<T>::new(&start, &fluid, &Physics::default(), &scheme)?;
+    let mut sph = Sph::<T, P>::new(&start, &fluid, &Physics::default(), &scheme)?;
     free_surface::set_pressure(&mut sph, &fluid, &start.positions, |x| scene.pressure(x));
     let description = super::description("rotating-patch", parameters, precision);
     Ok(SphScene { sph, flow: PatchFlow { scene, fluid }, description })
@@ -69,32 +69,30 @@ struct PatchFlow {
 }
 
 /// Angular momentum about the origin, kg m^2/s (per m).
-fn angular_momentum<T: Real>(
-    whole: &mut Whole<'_, Cells<T>>,
-    fields: &Fields<T>,
+fn angular_momentum<T: Real, P: Real>(
+    whole: &mut Whole<'_, Cells<P>>,
+    fields: &Fields<T, P>,
     mass: f64,
 ) -> f64 {
     let [sum] = whole.sum(|near| {
-        let value =
-            |k: usize, of: &[finegrain_framework::State<T>]| near.state(of[k]).own().whole();
-        let (x, y) = (value(0, &fields.position), value(1, &fields.position));
-        let (u, v) = (value(0, &fields.velocity), value(1, &fields.velocity));
+        let [x, y] = [0, 1].map(|a| near.state(fields.position[a]).own().whole());
+        let [u, v] = [0, 1].map(|a| near.state(fields.velocity[a]).own().whole());
         let of = |i: usize| x[i].as_f64() * v[i].as_f64() - y[i].as_f64() * u[i].as_f64();
         [(0..x.len()).map(of).sum()]
     });
     sum * mass
 }
 
-impl<T: Real> Flow<T> for PatchFlow {
+impl<T: Real, P: Real> Flow<T, P> for PatchFlow {
     fn end_time(&self) -> f64 {
         2.0 / ANGULAR_VELOCITY
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let every = Every::Time(0.005 / ANGULAR_VELOCITY);
         let run = free_surface::monitor_energy(run, every, fields, self.fluid, mass, |_| 0.0);
         let (fields, fluid) = (fields.clone(), self.fluid);
-        let radius = 2.0 * Flow::<T>::spacing(self);
+        let radius = 2.0 * Flow::<T, P>::spacing(self);
         let scale = DENSITY * (ANGULAR_VELOCITY * SIDE).powi(2);
         let columns =
             ["angular_momentum", "centre_pressure", "momentum_x", "momentum_y", "largest_speed"];
@@ -118,11 +116,11 @@ impl<T: Real> Flow<T> for PatchFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         _: f64,
     ) {
-        let spacing = Flow::<T>::spacing(self);
+        let spacing = Flow::<T, P>::spacing(self);
         report.result("voids", free_surface::voids(simulation, fields, spacing, spacing), None);
         let history = &summary.histories[1];
         let column = |name| history.column(name).map(Iterator::collect::<Vec<f64>>);

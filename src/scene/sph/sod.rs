@@ -34,10 +34,10 @@ fn sides(scene: &Sod) -> [[f64; 2]; 2] {
     [[d, d], [8.0 / 3.0 * d, 3.0 * d]]
 }
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, Tube>, SceneError> {
+) -> Result<SphScene<T, P, Tube>, SceneError> {
     let scene = Sod::new(parameters);
     let sides = sides(&scene);
     let [[spacing, _], [thinnest, _]] = sides;
@@ -83,30 +83,30 @@ struct Tube {
 
 impl Tube {
     /// Position along the tube, density and energy of the particles from 0 to 1.
-    fn particles<T: Real>(
+    fn particles<T: Real, P: Real>(
         &self,
-        simulation: &Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
     ) -> Vec<[f64; 4]> {
         let columns = simulation.columns();
         let value = |handle: State<T>, i: usize| columns.values(handle)[i].as_f64();
         (0..columns.points())
             .map(|i| {
                 let energy = fields.energy.map_or(0.0, |energy| value(energy, i));
-                let (x, u) = (value(fields.position[0], i), value(fields.velocity[0], i));
-                [x, value(fields.density, i), u, energy]
+                let x = columns.values(fields.position[0])[i].as_f64();
+                [x, value(fields.density, i), value(fields.velocity[0], i), energy]
             })
             .filter(|[x, ..]| (0.0..=1.0).contains(x))
             .collect()
     }
 }
 
-impl<T: Real> Flow<T> for Tube {
+impl<T: Real, P: Real> Flow<T, P> for Tube {
     fn end_time(&self) -> f64 {
         0.2
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         gas::observe(run, fields, mass, 0.01)
     }
 
@@ -116,8 +116,8 @@ impl<T: Real> Flow<T> for Tube {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         mass: f64,
     ) {
         gas::judge_energy(report, summary, simulation, fields, mass);
@@ -150,11 +150,11 @@ impl<T: Real> Flow<T> for Tube {
         self.spacing
     }
 
-    fn picture(&self, simulation: &Simulation<Cells<T>>, fields: &Fields<T>) -> Picture {
+    fn picture(&self, simulation: &Simulation<Cells<P>>, fields: &Fields<T, P>) -> Picture {
         let time = simulation.clock().time();
         let particles = self.particles(simulation, fields);
         let points = particles.into_iter().map(|[x, density, ..]| [x, density]).collect();
-        let title = format!("{}, t = {time:.3} s", <Self as Flow<T>>::title(self));
+        let title = format!("{}, t = {time:.3} s", <Self as Flow<T, P>>::title(self));
         let exact = |x| self.scene.exact(x, time).density;
         gas::chart(title, Axis::new("x").unit("m"), points, exact).into()
     }

@@ -25,10 +25,10 @@ pub fn parameters() -> Vec<Parameter> {
 
 prepare_with!(build);
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, WaveFlow>, SceneError> {
+) -> Result<SphScene<T, P, WaveFlow>, SceneError> {
     let mut scene = StandingWave::new(parameters);
     let spacing = DEPTH / scene.resolution;
     scene.tank = tank::fit(scene.tank, spacing);
@@ -40,7 +40,7 @@ fn build<T: Real>(
     start.velocities = start.positions.iter().map(|&x| scene.velocity(x)).collect();
     let positions = start.positions.clone();
     tank::settle(&mut start, &scene.tank, DEPTH, fluid.sound_speed);
-    let mut sph = Sph::<T>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
+    let mut sph = Sph::<T, P>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
     free_surface::set_pressure(&mut sph, &fluid, &positions, |[x, y, z]| {
         scene.pressure([x, y.min(DEPTH), z])
     });
@@ -53,12 +53,12 @@ struct WaveFlow {
     fluid: Fluid,
 }
 
-impl<T: Real> Flow<T> for WaveFlow {
+impl<T: Real, P: Real> Flow<T, P> for WaveFlow {
     fn end_time(&self) -> f64 {
         4.1 * self.scene.period()
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let every = Every::Time(0.01 * self.scene.period());
         let run = tank::monitor(run, every, fields, self.fluid, mass, self.scene.tank);
         let (fields, scene) = (fields.clone(), self.scene);
@@ -66,7 +66,7 @@ impl<T: Real> Flow<T> for WaveFlow {
         run.monitor("wave", every, ["phase"], move |whole| {
             let [along, whole] = whole.sum(|near| {
                 let of = |handle| near.state(handle).own().whole();
-                let [x, y] = [0, 1].map(|a| of(fields.position[a]));
+                let [x, y] = [0, 1].map(|a| near.state(fields.position[a]).own().whole());
                 let [u, v] = [0, 1].map(|a| of(fields.velocity[a]));
                 let mut sums = [0.0; 2];
                 for i in 0..x.len() {
@@ -90,8 +90,8 @@ impl<T: Real> Flow<T> for WaveFlow {
         &self,
         report: &mut Report,
         summary: &Summary,
-        _: &mut Simulation<Cells<T>>,
-        _: &Fields<T>,
+        _: &mut Simulation<Cells<P>>,
+        _: &Fields<T, P>,
         _: f64,
     ) {
         if let Some([growth, change]) =

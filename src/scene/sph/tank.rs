@@ -121,21 +121,24 @@ pub(super) fn settle(start: &mut Start, tank: &Tank, depth: f64, sound_speed: f6
 }
 
 /// Number of particles of the water beyond a wall, the largest x among them, and the largest speed.
-pub(super) fn watch<T: Real>(
-    whole: &mut Whole<'_, Cells<T>>,
-    fields: &Fields<T>,
+pub(super) fn watch<T: Real, P: Real>(
+    whole: &mut Whole<'_, Cells<P>>,
+    fields: &Fields<T, P>,
     tank: &Tank,
 ) -> [f64; 3] {
-    let width = T::of(tank.width);
+    let width = P::of(tank.width);
     let value =
-        |near: &Near<'_, Cells<T>>, handle: State<T>, i: usize| near.state(handle).own().whole()[i];
-    let is_water = |near: &Near<'_, Cells<T>>, i: usize| {
+        |near: &Near<'_, Cells<P>>, handle: State<T>, i: usize| near.state(handle).own().whole()[i];
+    let coordinate = |near: &Near<'_, Cells<P>>, a: usize, i: usize| {
+        near.state(fields.position[a]).own().whole()[i]
+    };
+    let is_water = |near: &Near<'_, Cells<P>>, i: usize| {
         fields.wall_depth.is_none_or(|depth| value(near, depth, i) == T::zero())
     };
     let [beyond] = whole.sum(|near| {
         let count = (0..near.spans()[0].len()).filter(|&i| {
-            let [x, y] = [0, 1].map(|a| value(near, fields.position[a], i));
-            is_water(near, i) && (x < T::zero() || x > width || y < T::zero())
+            let [x, y] = [0, 1].map(|a| coordinate(near, a, i));
+            is_water(near, i) && (x < P::zero() || x > width || y < P::zero())
         });
         [count.count() as f64]
     });
@@ -144,7 +147,7 @@ pub(super) fn watch<T: Real>(
         for i in (0..near.spans()[0].len()).filter(|&i| is_water(near, i)) {
             let squared: f64 =
                 fields.velocity.iter().map(|&v| value(near, v, i).as_f64().powi(2)).sum();
-            most[0] = most[0].max(value(near, fields.position[0], i).as_f64());
+            most[0] = most[0].max(coordinate(near, 0, i).as_f64());
             most[1] = most[1].max(squared);
         }
         most
@@ -153,14 +156,14 @@ pub(super) fn watch<T: Real>(
 }
 
 /// Monitors energy, and what [`watch`] sees.
-pub(super) fn monitor<T: Real>(
-    run: Run<Cells<T>>,
+pub(super) fn monitor<T: Real, P: Real>(
+    run: Run<Cells<P>>,
     every: Every,
-    fields: &Fields<T>,
+    fields: &Fields<T, P>,
     fluid: Fluid,
     mass: f64,
     tank: Tank,
-) -> Run<Cells<T>> {
+) -> Run<Cells<P>> {
     let run =
         free_surface::monitor_energy(run, every, fields, fluid, mass, |[_, y, _]| GRAVITY * y);
     let fields = fields.clone();

@@ -41,10 +41,10 @@ pub fn parameters() -> Vec<Parameter> {
 
 prepare_with!(build);
 
-fn build<T: Real>(
+fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, Vortices>, SceneError> {
+) -> Result<SphScene<T, P, Vortices>, SceneError> {
     let scene = TaylorGreen::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let packing = if scene.dims == 2 { Packing::Square } else { Packing::Cubic };
@@ -63,7 +63,7 @@ fn build<T: Real>(
         state_equation: super::state_equation(parameters),
     };
     let physics = Physics { viscosity: Some(super::viscosity(parameters)), ..Physics::default() };
-    let mut sph = Sph::<T>::new(&start, &fluid, &physics, &super::scheme(parameters))?;
+    let mut sph = Sph::<T, P>::new(&start, &fluid, &physics, &super::scheme(parameters))?;
     // Density that goes with the pressure of the vortices, so that they start without sound.
     if scene.dims == 2 {
         let density = sph.model.columns.values_mut(sph.fields.density);
@@ -84,12 +84,12 @@ struct Vortices {
     scene: TaylorGreen,
 }
 
-impl<T: Real> Flow<T> for Vortices {
+impl<T: Real, P: Real> Flow<T, P> for Vortices {
     fn end_time(&self) -> f64 {
         1.0
     }
 
-    fn observe(&self, run: Run<Cells<T>>, fields: &Fields<T>, mass: f64) -> Run<Cells<T>> {
+    fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
         let fields = fields.clone();
         let columns = ["kinetic_energy", "largest_speed", "momentum_x", "momentum_y"];
         run.monitor("flow", Every::Time(0.02), columns, move |whole| {
@@ -105,8 +105,8 @@ impl<T: Real> Flow<T> for Vortices {
         &self,
         report: &mut Report,
         summary: &Summary,
-        simulation: &mut Simulation<Cells<T>>,
-        fields: &Fields<T>,
+        simulation: &mut Simulation<Cells<P>>,
+        fields: &Fields<T, P>,
         mass: f64,
     ) {
         let time = summary.time;
@@ -126,7 +126,8 @@ impl<T: Real> Flow<T> for Vortices {
         let (mut l1, mut l2) = ([0.0; 2], [0.0; 2]);
         for i in 0..columns.points() {
             let value = |handle: State<T>| columns.values(handle)[i].as_f64();
-            let x = [value(fields.position[0]), value(fields.position[1]), 0.0];
+            let [x, y] = [0, 1].map(|a| columns.values(fields.position[a])[i].as_f64());
+            let x = [x, y, 0.0];
             let exact = scene.velocity(x, time);
             let (dx, dy) =
                 (value(fields.velocity[0]) - exact[0], value(fields.velocity[1]) - exact[1]);

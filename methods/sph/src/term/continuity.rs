@@ -6,15 +6,21 @@ use super::{Term, Work};
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 
-/// `d rho_i / dt = sum_j m_j (v_i - v_j) . grad_i W_ij`, kg/(m^3 s), for equal masses `m`.
+/// `d rho_i / dt = sum_j m_j (v_i - v_j) . grad_i W_ij`, kg/(m^3 s), for equal masses `m`; or
+/// `rho_i sum_j V_j (v_i - v_j) . L_i grad_i W_ij` with the corrected gradient (Bonet & Lok 1999),
+/// which is exact where the velocity varies linearly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Continuity<T> {
     pub mass: T,
+    /// Whether with the corrected gradient.
+    pub is_corrected: bool,
 }
 
 impl<T: Real> Term<T> for Continuity<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
-        Quantity::vector(Quantity::Velocity, dims).collect()
+        let correction = Quantity::symmetric(Quantity::Correction, dims).chain([Quantity::Volume]);
+        let correction = correction.filter(|_| self.is_corrected);
+        Quantity::vector(Quantity::Velocity, dims).chain(correction).collect()
     }
 
     fn writes(&self, _: usize) -> Vec<Quantity> {
@@ -30,9 +36,19 @@ impl<T: Real> Term<T> for Continuity<T> {
         sums: &mut Values<T>,
     ) {
         let factor = near.gradient_factor();
-        let [jump, _] = work.lanes(factor.len());
-        near.velocity_jump(i, jump);
-        let [sum] = T::dots(factor, [&*jump]);
-        sums[Quantity::DensityRate] += self.mass * sum;
+        let [jump, weight] = work.lanes(factor.len());
+        if self.is_corrected {
+            near.corrected_velocity_jump(i, jump);
+            let volume = near.values(Quantity::Volume);
+            for ((weight, &factor), &volume) in weight.iter_mut().zip(factor).zip(volume) {
+                *weight = factor * volume;
+            }
+            let [sum] = T::dots(weight, [&*jump]);
+            sums[Quantity::DensityRate] += self.mass / i[Quantity::Volume] * sum;
+        } else {
+            near.velocity_jump(i, jump);
+            let [sum] = T::dots(factor, [&*jump]);
+            sums[Quantity::DensityRate] += self.mass * sum;
+        }
     }
 }

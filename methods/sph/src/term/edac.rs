@@ -21,12 +21,16 @@ pub(crate) struct PressureEvolution<T> {
     pub diffusivity: T,
     /// Whether particles drift.
     pub drifts: bool,
+    /// Whether with the corrected gradient, where there is one.
+    pub is_corrected: bool,
 }
 
 impl<T: Real> Term<T> for PressureEvolution<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
         let drift = Quantity::vector(Quantity::Drift, dims).filter(|_| self.drifts);
-        let velocity = Quantity::vector(Quantity::Velocity, dims);
+        let correction = Quantity::symmetric(Quantity::Correction, dims);
+        let correction = correction.filter(|_| self.is_corrected);
+        let velocity = Quantity::vector(Quantity::Velocity, dims).chain(correction);
         velocity.chain(drift).chain([Quantity::Volume, Quantity::Pressure]).collect()
     }
 
@@ -46,7 +50,11 @@ impl<T: Real> Term<T> for PressureEvolution<T> {
         let [weight, jump] = work.lanes(factor.len());
         let (own, volume) = (i[Quantity::Volume], near.values(Quantity::Volume));
         let (own_pressure, pressure) = (i[Quantity::Pressure], near.values(Quantity::Pressure));
-        near.velocity_jump(i, jump);
+        if self.is_corrected {
+            near.corrected_velocity_jump(i, jump);
+        } else {
+            near.velocity_jump(i, jump);
+        }
         for ((weight, &factor), &volume) in weight.iter_mut().zip(factor).zip(volume) {
             *weight = factor * volume;
         }
@@ -60,7 +68,10 @@ impl<T: Real> Term<T> for PressureEvolution<T> {
             for (weight, &jump) in weight.iter_mut().zip(&*jump) {
                 *weight *= jump;
             }
-            let gradient = near.sum_differences(weight);
+            let mut gradient = near.sum_differences(weight);
+            if self.is_corrected {
+                gradient = i.corrected(gradient);
+            }
             for a in 0..D {
                 sum -= i[Quantity::Drift(a)] * gradient[a];
             }

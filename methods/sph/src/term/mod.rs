@@ -13,7 +13,9 @@ pub(crate) mod energy;
 pub(crate) mod gas_pressure;
 pub(crate) mod moment;
 pub(crate) mod momentum;
+pub(crate) mod monaghan_viscosity;
 pub(crate) mod number_density;
+pub(crate) mod pressure_difference;
 pub(crate) mod repulsion;
 pub(crate) mod shifting;
 pub(crate) mod shock_viscosity;
@@ -40,7 +42,9 @@ use energy::Energy;
 use gas_pressure::GasPressure;
 use moment::{DensitySlope, MomentMatrix};
 use momentum::{PressureGradient, StressDivergence};
+use monaghan_viscosity::MonaghanViscosity;
 use number_density::NumberDensity;
+use pressure_difference::PressureDifference;
 use repulsion::Repulsion;
 use shifting::Shifting;
 use shock_viscosity::ShockViscosity;
@@ -177,6 +181,7 @@ terms!(
     PressureGradient<T>,
     StressDivergence<T>,
     MorrisViscosity<T>,
+    MonaghanViscosity<T>,
     Energy<T>,
     MirroredVelocity<T>,
     FittedVelocity<T>,
@@ -196,6 +201,7 @@ terms!(
     Drift<T>,
     DriftStress,
     PressureEvolution<T>,
+    PressureDifference<T>,
     WeightedPressureGradient<T>,
     WeightedViscosity<T>,
 );

@@ -5,7 +5,7 @@ use finegrain_framework::Real;
 
 use super::{Term, Work};
 use crate::neighbourhood::{Neighbours, Particle};
-use crate::quantity::{Quantity, Values, component};
+use crate::quantity::{Quantity, Values};
 
 /// `-U H sum_j V_j (1 + R (W_ij / W(dx))^4) grad_i W_ij`, m/s, with a speed `U` of the flow, the
 /// radius `H` of the support and `R = 0.2`: down the gradient of the particle concentration (Lind
@@ -105,13 +105,9 @@ impl<T: Real> Shifting<T> {
         for ((weight, &factor), &volume) in lanes {
             *weight = factor * volume;
         }
-        let gradient = near.sum_differences(weight);
-        let mut normal = [T::zero(); D];
+        let mut normal = i.corrected(near.sum_differences(weight));
         let mut squared = T::zero();
         for a in 0..D {
-            for b in 0..D {
-                normal[a] += i[Quantity::Correction(component(a, b))] * gradient[b];
-            }
             squared += normal[a] * normal[a];
         }
         if squared > T::zero() {

@@ -19,11 +19,15 @@ pub(crate) struct StrainRate<T> {
     pub dynamic_viscosity: T,
     /// Velocity that is seen in bodies, besides that with which particles move.
     pub in_bodies: Option<VelocityInBodies>,
+    /// Whether with the corrected gradient.
+    pub is_corrected: bool,
 }
 
 impl<T: Real> Term<T> for StrainRate<T> {
     fn reads(&self, dims: usize) -> Vec<Quantity> {
-        VelocityInBodies::reads(self.in_bodies, dims)
+        let correction = Quantity::symmetric(Quantity::Correction, dims);
+        let correction = correction.filter(|_| self.is_corrected);
+        VelocityInBodies::reads(self.in_bodies, dims).into_iter().chain(correction).collect()
     }
 
     fn writes(&self, dims: usize) -> Vec<Quantity> {
@@ -62,6 +66,9 @@ impl<T: Real> Term<T> for StrainRate<T> {
                 }
             }
             gradient[a] = near.sum_differences(jump);
+            if self.is_corrected {
+                gradient[a] = i.corrected(gradient[a]);
+            }
         }
         let divergence = (0..D).fold(T::zero(), |sum, a| sum + gradient[a][a]);
         let density = self.mass / i[Quantity::Volume];

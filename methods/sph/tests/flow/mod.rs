@@ -25,13 +25,13 @@ pub fn edac() -> Scheme {
 }
 
 /// Vortices in a periodic box from a disturbed lattice, with or without a cylinder in it.
-pub fn flow<T: Real>(
+pub fn flow<T: Real, P: Real>(
     dims: usize,
     viscosity: Viscosity,
     scheme: &Scheme,
     has_body: bool,
     settings: Settings,
-) -> (Simulation<Cells<T>>, Fields<T>, f64) {
+) -> (Simulation<Cells<P>>, Fields<T, P>, f64) {
     let (packing, box_sides, spacing) = if dims == 3 {
         // Thin: a support radius of 0.3 in a box 0.25 high.
         (Packing::HexagonalClosePacked, [1.0, 1.0, 0.25], 0.1)
@@ -76,7 +76,7 @@ pub fn flow<T: Real>(
         forces_on_bodies: has_body && scheme.wall_velocity != WallVelocity::Linear,
         ..Physics::default()
     };
-    let sph = Sph::<T>::new(&start, &fluid, &physics, scheme).unwrap();
+    let sph = Sph::<T, P>::new(&start, &fluid, &physics, scheme).unwrap();
     let simulation = Simulation::new(sph.model, settings).unwrap();
     (simulation, sph.fields, sph.particle_mass)
 }

@@ -1,0 +1,154 @@
+//! The sums of a sweep over what was gathered: nothing here knows columns, or how precise positions
+//! are, so that it is compiled once for a scalar type.
+
+use finegrain_framework::Real;
+
+use crate::acceleration::AccelerationField;
+use crate::candidates::{Candidates, Layout};
+use crate::kernel::adaptive::Kernels;
+use crate::neighbourhood::{Neighbours, Particle};
+use crate::quantity::{Quantity, Values};
+use crate::term::{AnyTerm, Term, Work};
+use crate::wall::{Extrapolation, Friction};
+
+/// The sums of one sweep over all pairs, in `D` dimensions.
+#[derive(Clone, Debug)]
+pub(crate) struct Sums<T, const D: usize> {
+    pub kernels: Kernels<T, D>,
+    /// The sums for particles of the fluid.
+    pub of_fluid: Vec<AnyTerm<T>>,
+    /// The sums for particles of bodies.
+    pub of_bodies: Vec<AnyTerm<T>>,
+    /// The forces between fluid and bodies, where those on bodies are asked for.
+    pub on_bodies: Vec<AnyTerm<T>>,
+    pub layout: Layout,
+    /// What is summed up.
+    pub outputs: Vec<Quantity>,
+    /// Acceleration of the fluid by a body force, m/s^2.
+    pub body_acceleration: [T; D],
+    /// The part of it that varies; only if accelerations are summed up.
+    pub acceleration_field: Option<AccelerationField>,
+    pub friction: Friction<T>,
+}
+
+/// A sub-domain's own part of the rates that a sweep writes, in the order of its outputs.
+pub(crate) type Written<'a, T> = [&'a mut [T]; Quantity::COUNT];
+
+impl<T: Real, const D: usize> Sums<T, D> {
+    /// Sums of the `count` particles of the cell whose candidates were collected, written from
+    /// `place` on.
+    #[inline(always)]
+    fn run(
+        &self,
+        count: usize,
+        place: usize,
+        written: &mut Written<'_, T>,
+        scratch: &mut Scratch<T, D>,
+        time: f64,
+    ) {
+        let Scratch { candidates, neighbours, work } = scratch;
+        let longest = match self.kernels {
+            Kernels::Uniform(_) => T::zero(),
+            Kernels::Adaptive(_) => candidates.largest(&self.layout, Quantity::SmoothingLength),
+        };
+        for k in 0..count {
+            let mut particle = candidates.particle(&self.layout, k);
+            if !self.acts_at(particle[Quantity::WallDepth]) {
+                for column in &mut written[..self.outputs.len()] {
+                    column[place + k] = T::zero();
+                }
+                continue;
+            }
+            particle.no_slip = self.no_slip(&particle, candidates);
+            neighbours.gather(&self.layout, candidates, &particle, &self.kernels, longest);
+            let mut sums = self.sum(&particle, neighbours, work);
+            if let Some(field) = &self.acceleration_field
+                && !particle.is_wall()
+            {
+                let given: [T; D] = field.at(candidates.place(&particle), time);
+                sums.add(Quantity::Acceleration, given);
+            }
+            for (column, &quantity) in written.iter_mut().zip(&self.outputs) {
+                column[place + k] = sums[quantity];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn no_slip(&self, i: &Particle<T, D>, candidates: &Candidates<T, D>) -> Extrapolation<T> {
+        if i.is_wall() { Extrapolation::none() } else { self.friction.at(candidates.place(i)) }
+    }
+
+    /// Whether there are sums for a particle at this depth in a body.
+    #[inline(always)]
+    pub fn acts_at(&self, wall_depth: T) -> bool {
+        if wall_depth > T::zero() {
+            !(self.of_bodies.is_empty() && self.on_bodies.is_empty())
+        } else {
+            !self.of_fluid.is_empty()
+        }
+    }
+
+    /// All terms for one particle.
+    #[inline(always)]
+    fn sum(&self, i: &Particle<T, D>, near: &Neighbours<T, D>, work: &mut Work<T>) -> Values<T> {
+        let mut sums = Values::zero();
+        let accelerating = if i.is_wall() {
+            &self.on_bodies
+        } else {
+            sums.add(Quantity::Acceleration, self.body_acceleration);
+            &self.of_fluid
+        };
+        for term in accelerating {
+            term.add(i, near, work, &mut sums);
+        }
+        if i.is_wall() {
+            for a in 0..D {
+                sums[Quantity::Reaction(a)] = sums[Quantity::Acceleration(a)];
+                sums[Quantity::Acceleration(a)] = T::zero();
+            }
+            for term in &self.of_bodies {
+                term.add(i, near, work, &mut sums);
+            }
+        }
+        sums
+    }
+}
+
+/// Working memory of one worker.
+pub(crate) struct Scratch<T, const D: usize> {
+    pub candidates: Candidates<T, D>,
+    neighbours: Neighbours<T, D>,
+    work: Work<T>,
+}
+
+impl<T: Real, const D: usize> Default for Scratch<T, D> {
+    fn default() -> Self {
+        Self {
+            candidates: Candidates::default(),
+            neighbours: Neighbours::default(),
+            work: Work::default(),
+        }
+    }
+}
+
+/// One cell's share of a sweep, to be compiled for every instruction set.
+pub(crate) struct Task<'s, 'n, T: Real, const D: usize> {
+    pub sums: &'s Sums<T, D>,
+    /// Number of particles of the cell, whose candidates are in the scratch.
+    pub count: usize,
+    /// Place of the first of them in the sub-domain.
+    pub place: usize,
+    pub written: &'s mut Written<'n, T>,
+    pub scratch: &'s mut Scratch<T, D>,
+    pub time: f64,
+}
+
+impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.sums.run(self.count, self.place, self.written, self.scratch, self.time);
+    }
+}
