@@ -40,7 +40,7 @@ pub struct Sign {
 }
 
 /// All hard cases (`finegrain report stability`).
-pub const HARD_CASES: [HardCase; 5] = [
+pub const HARD_CASES: [HardCase; 7] = [
     HardCase {
         name: "taylor-green, Re 1000",
         scene: "taylor-green",
@@ -92,6 +92,31 @@ pub const HARD_CASES: [HardCase; 5] = [
             CLUMPING,
         ],
     },
+    HardCase {
+        // An array, not a channel: each cylinder stands in the wake of the one before.
+        name: "cylinders, inertial",
+        scene: "cylinder",
+        settings: &[("viscosity", "1e-6"), ("body_acceleration", "2e-5"), ("resolution", "40")],
+        // Twice the time in which the flow would be at its speed without inertia.
+        until: 700.0,
+        variants: BETWEEN_WALLS,
+        signs: &[
+            Sign { result: "traction", least: 0.9, most: 1.1, symptom: "momentum lost" },
+            CLUMPING,
+        ],
+    },
+    HardCase {
+        name: "noh, 2-D",
+        scene: "noh",
+        settings: &[("dim", "2"), ("resolution", "60")],
+        until: 0.6,
+        variants: GAS,
+        signs: &[
+            // 16 behind the shock.
+            Sign { result: "shocked_density", least: 14.4, most: 17.6, symptom: "wrong density" },
+            Sign { result: "energy_drift", least: 0.0, most: 1e-3, symptom: "energy drift" },
+        ],
+    },
 ];
 
 const CLUMPING: Sign =
@@ -120,6 +145,26 @@ const VORTICES: &[Variant] = &[
     variant("wendland-c2, 1.5", &[("kernel", "wendland-c2"), ("smoothing_ratio", "1.5")]),
     variant("gaussian", &[("kernel", "gaussian")]),
     variant("symplectic-euler", &[("integrator", "symplectic-euler")]),
+    variant("rk4", &[("integrator", "rk4")]),
+];
+
+const BETWEEN_WALLS: &[Variant] = &[
+    variant("default", &[]),
+    variant("no transport", &[("transport", "0")]),
+    variant("state equation", &[("pressure", "state-equation")]),
+    variant("mirrored velocity", &[("wall_velocity", "mirrored")]),
+    variant("linear velocity", &[("wall_velocity", "linear")]),
+    variant("wendland-c2, 1.5", &[("kernel", "wendland-c2"), ("smoothing_ratio", "1.5")]),
+    variant("rk4", &[("integrator", "rk4")]),
+];
+
+const GAS: &[Variant] = &[
+    variant("default", &[]),
+    variant("no conductivity", &[("conductivity", "0")]),
+    variant("half the viscosity", &[("shock_viscosity", "0.5")]),
+    variant("wendland-c2", &[("kernel", "wendland-c2")]),
+    variant("quintic spline, 1.2", &[("kernel", "quintic-spline"), ("smoothing_ratio", "1.2")]),
+    variant("rk2", &[("integrator", "rk2")]),
     variant("rk4", &[("integrator", "rk4")]),
 ];
 

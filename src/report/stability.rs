@@ -5,6 +5,8 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use finegrain_framework::run::Stopped;
+
 use super::hard_cases::{HardCase, Variant};
 use crate::figure::{FigureError, Tile, Tiles, Tone};
 use crate::scene::{Orders, Precision, Report, Scene, SceneError};
@@ -48,7 +50,7 @@ pub struct Entry {
     pub largest_courant: Option<f64>,
 }
 
-/// Courant numbers that are tried, in units of the limits that the method keeps by itself.
+/// Courant numbers that are tried, in units of the scene's own.
 pub const COURANT_NUMBERS: [f64; 5] = [1.0, 1.5, 2.0, 3.0, 4.0];
 
 /// What to run.
@@ -127,16 +129,16 @@ fn run(
     left: Duration,
 ) -> Result<(Outcome, f64), SceneError> {
     let scene = Scene::find(case.scene)?;
-    let courant = courant.to_string();
-    let settings = case.settings.iter().chain(variant.settings).copied();
-    let parameters = scene.set(settings.chain([("courant", courant.as_str())]))?;
+    let settings = || case.settings.iter().chain(variant.settings).copied();
+    let courant = (courant * scene.set(settings())?.number("courant")).to_string();
+    let parameters = scene.set(settings().chain([("courant", courant.as_str())]))?;
     let prepared = scene.prepare(None, &parameters, Precision::F64)?;
     let (until, wall_clock) = (Some(case.until), Some(left));
     let begun = Instant::now();
     let ended = prepared.run(Orders { until, wall_clock, workers, ..Orders::default() });
     let wall_s = begun.elapsed().as_secs_f64();
     let outcome = match ended {
-        Ok(report) if report.time < case.until => Outcome::Unfinished,
+        Ok(report) if report.stopped == Stopped::WallClock => Outcome::Unfinished,
         Ok(report) => judge(case, &report),
         Err(SceneError::Run(failed)) => Outcome::BlowsUp(failed.to_string()),
         Err(other) => return Err(other),
