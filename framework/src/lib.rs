@@ -81,6 +81,7 @@ pub mod lanes;
 mod leg;
 #[cfg(all(test, loom))]
 mod model_checks;
+pub mod pack;
 pub mod port;
 mod real;
 pub mod run;
