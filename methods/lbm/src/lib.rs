@@ -75,6 +75,6 @@ pub use error::LbmError;
 pub use fields::Fields;
 pub use lattice::{Lattice, LatticeKind};
 pub use mesh::Mesh;
-pub use model::Lbm;
+pub use model::{Compiled, Lbm};
 pub use physics::{Fluid, Physics, Scheme};
 pub use start::Start;

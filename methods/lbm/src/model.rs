@@ -40,12 +40,59 @@ pub struct Parts<T> {
     pub(crate) sites: Arc<Sites<T>>,
 }
 
-impl<T: Real> Lbm<T> {
+/// A scalar that kernels are compiled for: once, in this crate, and not anew in every crate that uses
+/// it, because there are many of them.
+pub trait Compiled: Real {
+    /// As [`Lbm::new`].
+    ///
+    /// # Errors
+    /// As [`Lbm::new`].
+    fn model(
+        mesh: &Mesh,
+        fluid: &Fluid,
+        physics: &Physics,
+        scheme: &Scheme,
+        start: &Start,
+    ) -> Result<Lbm<Self>, LbmError>;
+}
+
+macro_rules! compiled {
+    ($($scalar:ident),*) => {
+        $(
+            impl Compiled for $scalar {
+                fn model(
+                    mesh: &Mesh,
+                    fluid: &Fluid,
+                    physics: &Physics,
+                    scheme: &Scheme,
+                    start: &Start,
+                ) -> Result<Lbm<Self>, LbmError> {
+                    Lbm::build(mesh, fluid, physics, scheme, start)
+                }
+            }
+        )*
+    };
+}
+compiled!(f32, f64);
+
+impl<T: Compiled> Lbm<T> {
     /// Builds a model.
     ///
     /// # Errors
     /// If a number is outside its valid range, the mesh has an open end, or nothing is fluid.
     pub fn new(
+        mesh: &Mesh,
+        fluid: &Fluid,
+        physics: &Physics,
+        scheme: &Scheme,
+        start: &Start,
+    ) -> Result<Self, LbmError> {
+        T::model(mesh, fluid, physics, scheme, start)
+    }
+}
+
+impl<T: Real> Lbm<T> {
+    fn build(
         mesh: &Mesh,
         fluid: &Fluid,
         physics: &Physics,

@@ -27,16 +27,16 @@ impl<T: Real> Collide<T> for Bgk<T> {
         f: [V; Q],
         acceleration: [V; 3],
     ) -> [V; Q] {
-        let flow = Flow::new::<L, Q>(&f, acceleration);
+        let flow = Flow::new::<L>(&f, &acceleration);
         let (omega, source) = (self.omega, T::one() - T::of(0.5) * self.omega);
         let mut after = f;
         after[0] = f[0]
-            + (flow.even_equilibrium::<L, Q>(0) - f[0]) * omega
-            + flow.even_source::<L, Q>(0) * source;
+            + (flow.even_equilibrium::<L>(0) - f[0]) * omega
+            + flow.even_source::<L>(0) * source;
         for n in 0..Q / 2 {
             let (q, back) = (2 * n + 1, 2 * n + 2);
-            let (even, odd) = (flow.even_equilibrium::<L, Q>(q), flow.odd_equilibrium::<L, Q>(q));
-            let sources = (flow.even_source::<L, Q>(q), flow.odd_source::<L, Q>(q));
+            let (even, odd) = (flow.even_equilibrium::<L>(q), flow.odd_equilibrium::<L>(q));
+            let sources = (flow.even_source::<L>(q), flow.odd_source::<L>(q));
             after[q] = f[q] + (even + odd - f[q]) * omega + (sources.0 + sources.1) * source;
             after[back] =
                 f[back] + (even - odd - f[back]) * omega + (sources.0 - sources.1) * source;

@@ -33,7 +33,7 @@ impl<T: Real> Collide<T> for Regularised<T> {
         f: [V; Q],
         acceleration: [V; 3],
     ) -> [V; Q] {
-        let flow = Flow::new::<L, Q>(&f, acceleration);
+        let flow = Flow::new::<L>(&f, &acceleration);
         let (density, u) = (flow.density, flow.velocity);
         let half = T::of(0.5);
         let kept = T::one() - self.omega;

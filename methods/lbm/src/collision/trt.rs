@@ -31,21 +31,21 @@ impl<T: Real> Collide<T> for Trt<T> {
         f: [V; Q],
         acceleration: [V; 3],
     ) -> [V; Q] {
-        let flow = Flow::new::<L, Q>(&f, acceleration);
+        let flow = Flow::new::<L>(&f, &acceleration);
         let half = T::of(0.5);
         let even_source = T::one() - half * self.even;
         let odd_source = T::one() - half * self.odd;
         let mut after = f;
         after[0] = f[0]
-            + (flow.even_equilibrium::<L, Q>(0) - f[0]) * self.even
-            + flow.even_source::<L, Q>(0) * even_source;
+            + (flow.even_equilibrium::<L>(0) - f[0]) * self.even
+            + flow.even_source::<L>(0) * even_source;
         for n in 0..Q / 2 {
             let (q, back) = (2 * n + 1, 2 * n + 2);
             let (even, odd) = ((f[q] + f[back]) * half, (f[q] - f[back]) * half);
-            let even_change = (flow.even_equilibrium::<L, Q>(q) - even) * self.even
-                + flow.even_source::<L, Q>(q) * even_source;
-            let odd_change = (flow.odd_equilibrium::<L, Q>(q) - odd) * self.odd
-                + flow.odd_source::<L, Q>(q) * odd_source;
+            let even_change = (flow.even_equilibrium::<L>(q) - even) * self.even
+                + flow.even_source::<L>(q) * even_source;
+            let odd_change = (flow.odd_equilibrium::<L>(q) - odd) * self.odd
+                + flow.odd_source::<L>(q) * odd_source;
             after[q] = f[q] + (even_change + odd_change);
             after[back] = f[back] + (even_change - odd_change);
         }
