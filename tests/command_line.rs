@@ -159,7 +159,8 @@ fn bad_arguments_are_named_with_what_would_be_right() {
     says(&small(&["--set", "viscocity=1"]), &["viscocity", "reynolds"]);
     says(&small(&["--set", "kernel=box"]), &["kernel = box", "gaussian"]);
     says(&small(&["--set", "resolution"]), &["KEY=VALUE"]);
-    says(&small(&["--method", "lbm"]), &["lbm", "sph"]);
+    says(&small(&["--method", "fem"]), &["fem", "sph, lbm"]);
+    says(&small(&["--method", "lbm", "--set", "kernel=gaussian"]), &["kernel", "collision"]);
     says(&small(&["--schedule", "chaos"]), &["chaos", "peer-to-peer"]);
     says(&small(&["--workers", "0"]), &["workers", "0"]);
     says(&small(&["--until", "-1"]), &["-1"]);

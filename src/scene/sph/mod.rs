@@ -1,23 +1,5 @@
 //! How smoothed particle hydrodynamics takes part in the scenes.
 
-/// Defines `prepare`, which makes a scene ready by a function `build::<T>(parameters, precision)`, in
-/// the scalar type asked for.
-macro_rules! prepare_with {
-    ($build:ident) => {
-        /// Prepares the scene.
-        pub fn prepare(
-            parameters: &$crate::scene::Parameters,
-            precision: $crate::scene::Precision,
-        ) -> Result<Box<dyn $crate::scene::Prepared>, $crate::scene::SceneError> {
-            use $crate::scene::Precision;
-            Ok(match precision {
-                Precision::F32 => Box::new($build::<f32>(parameters, precision)?),
-                Precision::F64 => Box::new($build::<f64>(parameters, precision)?),
-            })
-        }
-    };
-}
-
 pub mod cavity;
 pub mod channel;
 pub mod cylinder;
@@ -35,9 +17,7 @@ pub mod taylor_green;
 
 mod profile;
 
-use std::time::Duration;
-
-use finegrain_framework::run::{Dump, Every, Run, Summary, Until};
+use finegrain_framework::run::{Dump, Run, Summary};
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Integrator, Real, Simulation, State};
 use finegrain_sph::{
@@ -279,16 +259,11 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
         let workers = settings.workers;
         let simulation = Simulation::new(model, settings)
             .map_err(|cause| SceneError::Workers { workers, cause })?;
-        let end_time = orders.until.or(orders.steps.is_none().then(|| flow.end_time()));
-        let until = Until { steps: orders.steps, time: end_time, wall_clock: orders.wall_clock };
-        let mut run = Run::new(simulation).until(until).scene(description);
-        run = flow.observe(run, &fields, particle_mass);
-        if let Some(out) = orders.out {
+        let run = flow.observe(Run::new(simulation).scene(description), &fields, particle_mass);
+        let mut run = orders.plan(run, flow.end_time(), |every| {
             let dims = fields.velocity.len();
             let velocity = &["velocity_x", "velocity_y", "velocity_z"][..dims];
-            let every = orders.dump_every.map_or(Every::Time(0.1 * flow.end_time()), Every::Steps);
             let mut dump = Dump::new("fields", every)
-                .and_last()
                 .scalar("identity")
                 .scalar("density")
                 .vector("velocity", velocity.iter().copied());
@@ -298,19 +273,8 @@ impl<T: Real, F: Flow<T>> Prepared for SphScene<T, F> {
             if fields.energy.is_some() {
                 dump = dump.scalar("energy");
             }
-            // One at the end in any case, so that every run can be taken up again.
-            let every = Every::Steps(orders.checkpoint_every.unwrap_or(u64::MAX));
-            run = run.out(out).dump(dump).checkpoint(every, 3);
-        }
-        if let Some(restart) = orders.restart {
-            run = run.restart_from(restart);
-        }
-        if let Some(progress) = orders.progress {
-            run = run.progress(progress, Duration::from_millis(200));
-        }
-        if let Some(stops) = orders.stops {
-            run = run.stop_on(stops);
-        }
+            dump
+        });
         let summary = run.run()?;
         let mut report = Report::new(&summary, points);
         let simulation = run.simulation_mut();
@@ -354,11 +318,7 @@ fn picture<T: Real>(
         .window([region.lower[0], region.lower[1]], [region.upper[0], region.upper[1]])
 }
 
-/// Everything that is modelled, a line each, for checkpoints.
+/// Everything that is modelled, for checkpoints.
 fn description(scene: &str, parameters: &Parameters, precision: super::Precision) -> String {
-    let mut text = format!("scene = {scene}\nmethod = sph\nprecision = {}\n", precision.name());
-    for (name, value) in parameters.iter() {
-        text += &format!("{name} = {value}\n");
-    }
-    text
+    super::description(scene, "sph", parameters, precision)
 }
