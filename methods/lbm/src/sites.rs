@@ -11,6 +11,10 @@ use crate::link::{Cut, Link};
 use crate::mesh::Mesh;
 use crate::physics::{Physics, Scheme};
 
+/// Surfaces so close on a link, as a fraction of it, are met at once: in a corner rounding must not
+/// decide which body it is, or a lid would add mass at one end and not take it at the other.
+const TIE: f64 = 1e-9;
+
 /// All rows.
 #[derive(Debug, Default)]
 pub(crate) struct Sites<T> {
@@ -215,7 +219,7 @@ impl Survey<'_> {
                 let crossing =
                     crossing.or_else(|| contains(&body.shape, end, image).then_some(1.0));
                 if let Some(fraction) = crossing
-                    && first.is_none_or(|(_, least)| fraction < least)
+                    && first.is_none_or(|(_, least)| fraction < least - TIE)
                 {
                     first = Some((number, fraction));
                 }
