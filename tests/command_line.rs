@@ -164,7 +164,8 @@ fn bad_arguments_are_named_with_what_would_be_right() {
     says(&small(&["--set", "viscocity=1"]), &["viscocity", "reynolds"]);
     says(&small(&["--set", "kernel=box"]), &["kernel = box", "gaussian"]);
     says(&small(&["--set", "resolution"]), &["KEY=VALUE"]);
-    says(&small(&["--method", "lbm"]), &["lbm", "sph"]);
+    says(&small(&["--method", "fem"]), &["fem", "sph, lbm"]);
+    says(&small(&["--method", "lbm", "--set", "kernel=gaussian"]), &["kernel", "collision"]);
     says(&small(&["--schedule", "chaos"]), &["chaos", "peer-to-peer"]);
     says(&small(&["--workers", "0"]), &["workers", "0"]);
     says(&small(&["--until", "-1"]), &["-1"]);
@@ -172,6 +173,8 @@ fn bad_arguments_are_named_with_what_would_be_right() {
     says(&small(&["--restart", "nowhere.ckpt"]), &["nowhere.ckpt"]);
     says(&["run", "nowhere.toml"], &["nowhere.toml"]);
     says(&["run", "cylinder", "--set", "solid_fraction=0.6"], &["solid_fraction", "0.5"]);
+    let mixed = ["run", "couette", "--method", "lbm", "--precision", "mixed"];
+    says(&mixed, &["lbm", "mixed", "f32 and f64"]);
     says(&["run", "couette", "--set", "transport=1"], &["transport", "density = summation"]);
 }
 

@@ -1,18 +1,35 @@
-//! Creeping flow past a cylinder, against the drag of Sangani & Acrivos (1982).
+//! Flow past a cylinder, against the drag of Sangani & Acrivos (1982) and velocities by finite
+//! elements.
+
+use std::collections::BTreeMap;
 
 use finegrain::scene::{Orders, Precision, Scene};
 
-/// Relative error of `drag_k` at a resolution.
-fn error(resolution: &str) -> f64 {
+/// Errors of the scene with these settings.
+fn errors(settings: &[(&str, &str)]) -> BTreeMap<&'static str, f64> {
     let scene = Scene::find("cylinder").unwrap();
-    let parameters = scene.set([("resolution", resolution)]).unwrap();
+    let parameters = scene.set(settings.iter().copied()).unwrap();
     let prepared = scene.prepare(None, &parameters, Precision::F64).unwrap();
-    prepared.run(Orders::default()).unwrap().errors["drag_k"]
+    prepared.run(Orders::default()).unwrap().errors
 }
 
 #[test]
-fn drag_is_within_five_percent_at_50_points_and_its_error_falls_with_resolution() {
-    let errors = ["16", "32", "50"].map(|resolution| error(resolution).abs());
-    assert!(errors[2] < 0.05, "errors {errors:?}");
-    assert!(errors[0] > errors[1] && errors[1] > errors[2], "errors {errors:?}");
+fn creeping_flow_converges() {
+    let [coarse, middle, fine] =
+        ["20", "32", "50"].map(|resolution| errors(&[("resolution", resolution)]));
+    let drag = [&coarse, &middle, &fine].map(|errors| errors["drag_k"].abs());
+    assert!(drag[2] < 0.02, "errors {drag:?}");
+    let order = (drag[0] / drag[2]).ln() / 2.5f64.ln();
+    assert!(order > 1.3 && drag[1] < drag[0], "order {order} of errors {drag:?}");
+    assert!(fine["profiles_l2"] < 0.02 && fine["profiles_l2"] < middle["profiles_l2"]);
+    // What drives the fluid ends on the cylinder.
+    assert!(fine["traction"].abs() < 5e-3, "traction {}", fine["traction"]);
+}
+
+#[test]
+fn flow_with_inertia() {
+    let settings = [("resolution", "32"), ("viscosity", "1e-6"), ("body_acceleration", "1.5e-7")];
+    let errors = errors(&settings);
+    assert!(errors["drag_k"].abs() < 0.02, "{errors:?}");
+    assert!(errors["traction"].abs() < 0.01, "{errors:?}");
 }

@@ -81,6 +81,7 @@ pub mod lanes;
 mod leg;
 #[cfg(all(test, loom))]
 mod model_checks;
+pub mod pack;
 pub mod port;
 mod real;
 pub mod run;
@@ -108,4 +109,4 @@ pub use step::{Stage, Step, StepBuilder};
 pub use team::Team;
 pub use view::*;
 pub use viewable::{Geometry, Viewable};
-pub use whole::{FixedPace, Pace, Pacing, Whole, WholeStage};
+pub use whole::{FixedPace, Pace, Pacing, RigidPace, Whole, WholeStage};

@@ -14,6 +14,7 @@ use num_traits::{Float, FromPrimitive, NumAssign};
 pub trait Real:
     crate::columns::Element
     + crate::lanes::Lanes
+    + crate::pack::Packed
     + Float
     + FromPrimitive
     + NumAssign

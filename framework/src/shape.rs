@@ -142,6 +142,44 @@ impl Shape {
         self.signed_distance(x) <= 0.0
     }
 
+    /// Where the straight way from `from` to `to` first meets the surface, as a fraction of the way
+    /// between 0 and 1; `None` if it misses the body or begins in it.
+    pub fn crossing(&self, from: [f64; 3], to: [f64; 3]) -> Option<f64> {
+        if self.contains(from) {
+            return None;
+        }
+        let way = difference(to, from);
+        let fraction = match *self {
+            Shape::Cylinder { axis, centre, radius } => {
+                let start = across(axis, difference(from, centre));
+                entry_into_ball(start, across(axis, way), radius)
+            }
+            Shape::Sphere { centre, radius } => {
+                entry_into_ball(difference(from, centre), way, radius)
+            }
+            Shape::Cuboid { low, high } => {
+                let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+                for k in 0..3 {
+                    if way[k] == 0.0 {
+                        if !(low[k]..=high[k]).contains(&from[k]) {
+                            return None;
+                        }
+                    } else {
+                        let faces = [low[k], high[k]].map(|face| (face - from[k]) / way[k]);
+                        enter = enter.max(faces[0].min(faces[1]));
+                        leave = leave.min(faces[0].max(faces[1]));
+                    }
+                }
+                (enter <= leave).then_some(enter)
+            }
+            Shape::HalfSpace { .. } => {
+                let [start, end] = [from, to].map(|x| self.signed_distance(x));
+                (end <= 0.0).then(|| start / (start - end))
+            }
+        };
+        fraction.filter(|fraction| *fraction <= 1.0)
+    }
+
     /// Outward unit vector: the gradient of [`Shape::signed_distance`] at `x`.
     ///
     /// Where the gradient is not unique (a centre, a centre line, points inside a cuboid that are
@@ -191,6 +229,15 @@ impl Shape {
 /// How far `x` lies beyond the nearer of the two faces across each direction; negative between.
 fn beyond_faces(x: [f64; 3], low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| (low[k] - x[k]).max(x[k] - high[k]))
+}
+
+/// The fraction of the `way` from `start`, outside of a ball about the origin, at which it enters the
+/// ball: the smaller root of `|start + s way| = radius`, in the form that does not cancel.
+fn entry_into_ball(start: [f64; 3], way: [f64; 3], radius: f64) -> Option<f64> {
+    let (a, b) = (dot(way, way), dot(start, way));
+    let c = dot(start, start) - radius * radius;
+    let discriminant = b * b - a * c;
+    (b < 0.0 && discriminant >= 0.0).then(|| c / (discriminant.sqrt() - b))
 }
 
 /// The part of `v` at right angles to `axis`.

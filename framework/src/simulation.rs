@@ -18,11 +18,12 @@ pub(crate) use saved::{Saved, column_block};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::clock::Clock;
-use crate::columns::{Columns, Role};
+use crate::columns::{Column, Columns, Role};
 use crate::domain::Domain;
 use crate::leg::{Cause, Desk, Failure, Leg, panic_message};
 use crate::schedule::{Executor, Schedule};
 use crate::stage::Fault;
+use crate::step::Step;
 use crate::whole::{Pace, Partials, Whole};
 
 /// A model being run.
@@ -38,6 +39,8 @@ pub struct Simulation<D: Domain> {
     /// Instruction sets that the lanes were computed with since the beginning of time.
     instruction_sets: Vec<String>,
     begun: bool,
+    /// Whether the derived fields are those of the present state.
+    derived: bool,
     settings: Settings,
 }
 
@@ -48,8 +51,18 @@ impl<D: Domain> Simulation<D> {
     /// If the system refuses threads, or there are to be no workers.
     ///
     /// # Panics
-    /// If the step swaps columns of different types: its handles belong to other columns.
+    /// If the step swaps columns of different types: its handles belong to other columns. If derived
+    /// fields are updated instead of computed anew, or are kept from step to step: looking must not
+    /// change what is computed.
     pub fn new(model: Model<D>, settings: Settings) -> std::io::Result<Self> {
+        for stage in model.plan.derived.iter().flat_map(|step| &step.stages) {
+            let kept = |(id, column): (_, &Column)| column.is_kept() && stage.writes().contains(id);
+            assert!(
+                stage.is_rate() && !model.columns.iter().any(kept),
+                "stage {} of derived fields changes the state",
+                stage.name()
+            );
+        }
         let executor =
             Executor::new(settings.schedule, settings.workers, settings.hand_out.clone())?;
         Ok(Self {
@@ -62,6 +75,7 @@ impl<D: Domain> Simulation<D> {
             end_time: None,
             instruction_sets: vec![crate::lanes::instruction_set().to_owned()],
             begun: false,
+            derived: false,
             settings,
         })
     }
@@ -91,8 +105,9 @@ impl<D: Domain> Simulation<D> {
         &self.settings
     }
 
-    /// Shortens the last steps so that one ends at `time` exactly; `None` for no end. Steps go on
-    /// past the end if asked for.
+    /// Shortens the last steps so that one ends at `time` exactly, or, if the pacing does not allow
+    /// it, ends a pace with the first step that reaches it; `None` for no end. Steps go on past the
+    /// end if asked for.
     ///
     /// Part of what is computed, unlike the points at which a run is cut into calls of
     /// [`Simulation::advance`]: set the same end from the start, or the time step may differ.
@@ -129,27 +144,43 @@ impl<D: Domain> Simulation<D> {
     /// As [`Simulation::advance`].
     pub fn begin(&mut self) -> Result<(), RunError> {
         if self.pace_left == 0 {
+            self.derived = false;
             self.begin_pace()?;
         }
         if self.begun {
             return Ok(());
         }
         if let Some(prologue) = &self.model.plan.prologue {
-            let mut desk = Desk::new(prologue, &self.model.columns, self.settings.workers);
-            let step = self.clock.step();
-            let leg = Leg::new(
+            let (columns, workers) = (&mut self.model.columns, self.settings.workers);
+            run_once(
                 &self.model.domain,
-                &mut self.model.columns,
+                columns,
                 prologue,
-                &mut desk,
                 &self.clock,
-                step..step + 1,
-                None,
-            );
-            self.executor.run(&leg);
-            leg.finish().map_err(|failure| self.error(failure))?;
+                &mut self.executor,
+                workers,
+            )
+            .map_err(|failure| self.error(failure))?;
         }
         self.begun = true;
+        Ok(())
+    }
+
+    /// Brings the derived fields ([`crate::Plan::derived`]) up to date with the present state; costs nothing
+    /// if they are. [`crate::run::Run`] does so before anybody looks.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn derive(&mut self) -> Result<(), RunError> {
+        if self.derived {
+            return Ok(());
+        }
+        if let Some(step) = &self.model.plan.derived {
+            let (columns, workers) = (&mut self.model.columns, self.settings.workers);
+            run_once(&self.model.domain, columns, step, &self.clock, &mut self.executor, workers)
+                .map_err(|failure| self.error(failure))?;
+        }
+        self.derived = true;
         Ok(())
     }
 
@@ -162,6 +193,7 @@ impl<D: Domain> Simulation<D> {
         let mut left = steps;
         while left > 0 {
             self.begin()?;
+            self.derived = false;
             let steps = left.min(self.pace_left).min(self.leg_steps());
             let first = self.clock.step();
             let leg = Leg::new(
@@ -301,9 +333,13 @@ impl<D: Domain> Simulation<D> {
             // A whole number of steps but for rounding is not worth one more.
             let needed = (remaining / dt - 1e-9).ceil();
             if needed >= 1.0 && needed <= steps as f64 {
-                dt = remaining / needed;
                 steps = needed as u64;
-                aim = Some(end);
+                // A step that ends there but for rounding ends there, however rigid.
+                let is_whole = (needed - remaining / dt).abs() < 1e-9 * needed;
+                if is_whole || self.model.pacing.may_shorten() {
+                    dt = remaining / needed;
+                    aim = Some(end);
+                }
             }
         }
         self.clock.set_dt(dt);
@@ -323,4 +359,20 @@ impl<D: Domain> Simulation<D> {
             cause: failure.cause,
         }
     }
+}
+
+/// Runs the stages of `step` once, without advancing time.
+fn run_once<D: Domain>(
+    domain: &D,
+    columns: &mut Columns,
+    step: &Step<D>,
+    clock: &Clock,
+    executor: &mut Executor,
+    workers: usize,
+) -> Result<(), Failure> {
+    let mut desk = Desk::new(step, columns, workers);
+    let now = clock.step();
+    let leg = Leg::new(domain, columns, step, &mut desk, clock, now..now + 1, None);
+    executor.run(&leg);
+    leg.finish()
 }

@@ -116,6 +116,13 @@ pub trait Pacing<D: Domain>: Send {
     /// # Errors
     /// If no time step is stable, say.
     fn pace(&mut self, whole: &mut Whole<'_, D>) -> Result<Pace, Fault>;
+
+    /// Whether steps may be made a little shorter, so that one ends at the end time. A method whose
+    /// time step is tied to its grid says no; its run then ends with the first step that reaches
+    /// the end time.
+    fn may_shorten(&self) -> bool {
+        true
+    }
 }
 
 /// The same time step always, and no whole-domain work.
@@ -129,5 +136,19 @@ impl<D: Domain> Pacing<D> for FixedPace {
         } else {
             Err(Fault::new(format!("time step {} must be positive and finite", self.0)))
         }
+    }
+}
+
+/// As [`FixedPace`], and never shortened to hit an end time.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidPace(pub f64);
+
+impl<D: Domain> Pacing<D> for RigidPace {
+    fn pace(&mut self, whole: &mut Whole<'_, D>) -> Result<Pace, Fault> {
+        FixedPace(self.0).pace(whole)
+    }
+
+    fn may_shorten(&self) -> bool {
+        false
     }
 }

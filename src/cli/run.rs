@@ -136,18 +136,22 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     };
     let scene = Scene::find(&file.scene).map_err(|e| in_file(e.into()))?;
     // What the command line says goes over what the file says; each answers for its own mistakes.
+    let is_files_method = arguments.method.is_none();
+    let method = arguments.method.or(file.method.clone());
+    let method = scene
+        .method(method.as_deref())
+        .map_err(|e| if is_files_method { in_file(e.into()) } else { e.into() })?
+        .name;
     let mut settings = file.settings();
     let set = |settings: &[(String, String)]| -> Result<Parameters, CommandError> {
-        Ok(scene.set(settings.iter().map(|(k, v)| (k.as_str(), v.as_str())))?)
+        Ok(scene.set_for(Some(method), settings.iter().map(|(k, v)| (k.as_str(), v.as_str())))?)
     };
     set(&settings).map_err(in_file)?;
     settings.extend(arguments.settings);
     let parameters = set(&settings)?;
-    let is_files_method = arguments.method.is_none();
-    let method = arguments.method.or(file.method);
     let precision = arguments.precision.or(file.precision.map(Into::into)).unwrap_or_default();
     let prepared = scene
-        .prepare(method.as_deref(), &parameters, precision)
+        .prepare(Some(method), &parameters, precision)
         .map_err(|e| if is_files_method { in_file(e.into()) } else { e.into() })?;
 
     let (stop, stops) = Port::unbounded("stop");
@@ -191,7 +195,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     if arguments.json {
         let line = Line {
             scene: scene.name,
-            method: method.as_deref().unwrap_or(scene.methods[0]),
+            method,
             parameters: &parameters,
             precision,
             schedule: arguments.schedule.name(),
@@ -241,7 +245,9 @@ fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
     for note in &report.notes {
         writeln!(out, "  note: {note}")?;
     }
-    for file in report.files.iter().filter(|f| f.extension().is_some_and(|e| e != "vtu")) {
+    for file in
+        report.files.iter().filter(|f| f.extension().is_some_and(|e| e != "vtu" && e != "vti"))
+    {
         writeln!(out, "  wrote {}", file.display())?;
     }
     Ok(())

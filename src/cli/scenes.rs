@@ -10,16 +10,18 @@ use super::CommandError;
 pub fn list(out: &mut impl Write) -> Result<(), CommandError> {
     for scene in SCENES {
         writeln!(out, "{}: {}", scene.name, scene.summary)?;
-        writeln!(out, "  methods: {}", scene.methods.join(", "))?;
-        for parameter in (scene.parameters)() {
-            let range = parameter.range();
-            writeln!(
-                out,
-                "  {:20} {:>18}  {} ({range})",
-                parameter.name,
-                parameter.default().to_string(),
-                parameter.help
-            )?;
+        for method in scene.methods {
+            writeln!(out, "  --method {}", method.name)?;
+            for parameter in (method.parameters)() {
+                let range = parameter.range();
+                writeln!(
+                    out,
+                    "    {:20} {:>18}  {} ({range})",
+                    parameter.name,
+                    parameter.default().to_string(),
+                    parameter.help
+                )?;
+            }
         }
         writeln!(out)?;
     }

@@ -9,11 +9,13 @@ pub mod cylinder;
 pub mod dam_break;
 pub mod drop;
 pub mod hydrostatic_tank;
+pub mod lbm;
 pub mod noh;
 pub mod parameter;
 pub mod report;
 pub mod riemann;
 pub mod rotating_patch;
+pub mod shear_wave;
 pub mod sod;
 pub mod sph;
 pub mod standing_wave;
@@ -23,8 +25,8 @@ pub mod taylor_green;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use finegrain_framework::run::{Progress, RunFailed};
-use finegrain_framework::{Schedule, Settings};
+use finegrain_framework::run::{Dump, Every, Progress, Run, RunFailed, Until};
+use finegrain_framework::{Schedule, Settings, Viewable};
 
 use finegrain_framework::port::{Inbox, Port};
 pub use parameter::{Kind, Parameter, ParameterError, Parameters, Value};
@@ -87,6 +89,35 @@ impl Orders {
         let settings = Settings { schedule: self.schedule, ..Settings::default() };
         Settings { workers: self.workers.unwrap_or(settings.workers), ..settings }
     }
+
+    /// Adds to a run when it ends, what it writes and where it begins; `end_time` is when the scene
+    /// ends by itself, s, and `dump` shows its fields.
+    fn plan<D: Viewable>(
+        self,
+        run: Run<D>,
+        end_time: f64,
+        dump: impl FnOnce(Every) -> Dump,
+    ) -> Run<D> {
+        let time = self.until.or(self.steps.is_none().then_some(end_time));
+        let mut run = run.until(Until { steps: self.steps, time, wall_clock: self.wall_clock });
+        if let Some(out) = self.out {
+            let every = self.dump_every.map_or(Every::Time(0.1 * end_time), Every::Steps);
+            let dump = dump(every).and_last();
+            // One at the end in any case, so that every run can be taken up again.
+            let every = Every::Steps(self.checkpoint_every.unwrap_or(u64::MAX));
+            run = run.out(out).dump(dump).checkpoint(every, 3);
+        }
+        if let Some(restart) = self.restart {
+            run = run.restart_from(restart);
+        }
+        if let Some(progress) = self.progress {
+            run = run.progress(progress, Duration::from_millis(200));
+        }
+        if let Some(stops) = self.stops {
+            run = run.stop_on(stops);
+        }
+        run
+    }
 }
 
 /// Why a scene could not be prepared or run.
@@ -112,12 +143,33 @@ pub enum SceneError {
         /// What there is.
         known: String,
     },
+    /// The method does not compute with such numbers.
+    #[error("method {method:?} has no precision {}; it has {known}", precision.name())]
+    Precision {
+        /// The method.
+        method: &'static str,
+        /// What was asked for.
+        precision: Precision,
+        /// What there is.
+        known: &'static str,
+    },
+    /// The parameters were set for another method or scene.
+    #[error("these are not the parameters of scene {scene:?} for method {method:?}")]
+    Parameters {
+        /// The scene.
+        scene: &'static str,
+        /// The method.
+        method: &'static str,
+    },
     /// A parameter cannot be set.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// The method refused the model.
     #[error(transparent)]
     Sph(#[from] finegrain_sph::SphError),
+    /// The method refused the model.
+    #[error(transparent)]
+    Lbm(#[from] finegrain_lbm::LbmError),
     /// The particles cannot be placed.
     #[error(transparent)]
     Packing(#[from] finegrain_sph::packing::PackingError),
@@ -149,6 +201,25 @@ pub trait Prepared {
 /// How a scene is made ready.
 type Prepare = fn(&Parameters, Precision) -> Result<Box<dyn Prepared>, SceneError>;
 
+/// How a method takes part in a scene.
+pub struct Method {
+    /// Its name.
+    pub name: &'static str,
+    /// The scene's parameters, and its own.
+    pub parameters: fn() -> Vec<Parameter>,
+    prepare: Prepare,
+}
+
+impl Method {
+    const fn sph(parameters: fn() -> Vec<Parameter>, prepare: Prepare) -> Self {
+        Self { name: "sph", parameters, prepare }
+    }
+
+    const fn lbm(parameters: fn() -> Vec<Parameter>, prepare: Prepare) -> Self {
+        Self { name: "lbm", parameters, prepare }
+    }
+}
+
 /// An entry of the catalogue.
 pub struct Scene {
     /// Its name.
@@ -156,10 +227,7 @@ pub struct Scene {
     /// One line about it.
     pub summary: &'static str,
     /// The methods that can run it, the default first.
-    pub methods: &'static [&'static str],
-    /// Its parameters, and those of its methods.
-    pub parameters: fn() -> Vec<Parameter>,
-    prepare: Prepare,
+    pub methods: &'static [Method],
 }
 
 /// All scenes.
@@ -167,93 +235,87 @@ pub const SCENES: &[Scene] = &[
     Scene {
         name: "cylinder",
         summary: "creeping flow through a square array of cylinders (Morris et al. 1997; 3-D as Holmes et al. 2011)",
-        methods: &["sph"],
-        parameters: sph::cylinder::parameters,
-        prepare: sph::cylinder::prepare,
+        methods: &[
+            Method::sph(sph::cylinder::parameters, sph::cylinder::prepare),
+            Method::lbm(lbm::cylinder::parameters, lbm::cylinder::prepare),
+        ],
     },
     Scene {
         name: "taylor-green",
         summary: "vortices decaying in a periodic box (Taylor & Green 1937)",
-        methods: &["sph"],
-        parameters: sph::taylor_green::parameters,
-        prepare: sph::taylor_green::prepare,
+        methods: &[
+            Method::sph(sph::taylor_green::parameters, sph::taylor_green::prepare),
+            Method::lbm(lbm::taylor_green::parameters, lbm::taylor_green::prepare),
+        ],
     },
     Scene {
         name: "elliptic-drop",
         summary: "a round drop drawn out by its own motion (Monaghan 1994)",
-        methods: &["sph"],
-        parameters: sph::drop::elliptic_parameters,
-        prepare: sph::drop::prepare_elliptic,
+        methods: &[Method::sph(sph::drop::elliptic_parameters, sph::drop::prepare_elliptic)],
     },
     Scene {
         name: "oscillating-drop",
         summary: "a drop that swings in a central force (Monaghan & Rafiee 2013)",
-        methods: &["sph"],
-        parameters: sph::drop::oscillating_parameters,
-        prepare: sph::drop::prepare_oscillating,
+        methods: &[Method::sph(sph::drop::oscillating_parameters, sph::drop::prepare_oscillating)],
     },
     Scene {
         name: "rotating-patch",
         summary: "a rotating square of fluid, under tension throughout (Colagrossi 2005)",
-        methods: &["sph"],
-        parameters: sph::rotating_patch::parameters,
-        prepare: sph::rotating_patch::prepare,
+        methods: &[Method::sph(sph::rotating_patch::parameters, sph::rotating_patch::prepare)],
     },
     Scene {
         name: "dam-break",
         summary: "collapse of a column of water in a tank (Martin & Moyce 1952)",
-        methods: &["sph"],
-        parameters: sph::dam_break::parameters,
-        prepare: sph::dam_break::prepare,
+        methods: &[Method::sph(sph::dam_break::parameters, sph::dam_break::prepare)],
     },
     Scene {
         name: "hydrostatic-tank",
         summary: "water at rest in a tank with a free surface",
-        methods: &["sph"],
-        parameters: sph::hydrostatic_tank::parameters,
-        prepare: sph::hydrostatic_tank::prepare,
+        methods: &[Method::sph(sph::hydrostatic_tank::parameters, sph::hydrostatic_tank::prepare)],
     },
     Scene {
         name: "standing-wave",
         summary: "a standing gravity wave in a closed tank (Antuono et al. 2011)",
-        methods: &["sph"],
-        parameters: sph::standing_wave::parameters,
-        prepare: sph::standing_wave::prepare,
+        methods: &[Method::sph(sph::standing_wave::parameters, sph::standing_wave::prepare)],
     },
     Scene {
         name: "sod",
         summary: "shock tube of an ideal gas (Sod 1978), 1-D or 2-D",
-        methods: &["sph"],
-        parameters: sph::sod::parameters,
-        prepare: sph::sod::prepare,
+        methods: &[Method::sph(sph::sod::parameters, sph::sod::prepare)],
     },
     Scene {
         name: "noh",
         summary: "implosion of a cold gas with an infinitely strong shock (Noh 1987), 1-D or 2-D",
-        methods: &["sph"],
-        parameters: sph::noh::parameters,
-        prepare: sph::noh::prepare,
+        methods: &[Method::sph(sph::noh::parameters, sph::noh::prepare)],
     },
     Scene {
         name: "couette",
         summary: "flow between two plates of which one starts to move (Morris et al. 1997)",
-        methods: &["sph"],
-        parameters: sph::channel::parameters,
-        prepare: sph::channel::prepare_couette,
+        methods: &[
+            Method::sph(sph::channel::parameters, sph::channel::prepare_couette),
+            Method::lbm(lbm::channel::parameters, lbm::channel::prepare_couette),
+        ],
     },
     Scene {
         name: "poiseuille",
         summary: "flow between two plates that a body force starts (Morris et al. 1997)",
-        methods: &["sph"],
-        parameters: sph::channel::parameters,
-        prepare: sph::channel::prepare_poiseuille,
+        methods: &[
+            Method::sph(sph::channel::parameters, sph::channel::prepare_poiseuille),
+            Method::lbm(lbm::channel::parameters, lbm::channel::prepare_poiseuille),
+        ],
     },
     Scene {
         name: "cavity",
         summary: "eddies under a moving lid (Ghia et al. 1982, Botella & Peyret 1998)",
-        methods: &["sph"],
-        parameters: sph::cavity::parameters,
-        prepare: sph::cavity::prepare,
+        methods: &[
+            Method::sph(sph::cavity::parameters, sph::cavity::prepare),
+            Method::lbm(lbm::cavity::parameters, lbm::cavity::prepare),
+        ],
+    },
+    Scene {
+        name: "shear-wave",
+        summary: "a wave of shear that viscosity lets decay in a periodic box",
+        methods: &[Method::lbm(lbm::shear_wave::parameters, lbm::shear_wave::prepare)],
     },
 ];
 
@@ -271,7 +333,23 @@ impl Scene {
         })
     }
 
-    /// Sets parameters.
+    /// A method that can run it, the default one if `None`.
+    ///
+    /// # Errors
+    /// If the scene does not have the method; the message lists those that it has.
+    pub fn method(&self, name: Option<&str>) -> Result<&'static Method, SceneError> {
+        let Some(name) = name else { return Ok(&self.methods[0]) };
+        self.methods.iter().find(|method| method.name == name).ok_or_else(|| {
+            let known: Vec<_> = self.methods.iter().map(|method| method.name).collect();
+            SceneError::Method {
+                scene: self.name,
+                method: name.to_owned(),
+                known: known.join(", "),
+            }
+        })
+    }
+
+    /// Sets parameters of the default method.
     ///
     /// # Errors
     /// If one is unknown or not valid.
@@ -279,27 +357,49 @@ impl Scene {
         &self,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Parameters, ParameterError> {
-        Parameters::new(self.name, &(self.parameters)(), settings)
+        Parameters::new(self.name, &(self.methods[0].parameters)(), settings)
+    }
+
+    /// Sets parameters of a method, the default one if `None`.
+    ///
+    /// # Errors
+    /// If the scene does not have the method, or a parameter is unknown or not valid.
+    pub fn set_for<'a>(
+        &self,
+        method: Option<&str>,
+        settings: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<Parameters, SceneError> {
+        let declared = (self.method(method)?.parameters)();
+        Ok(Parameters::new(self.name, &declared, settings)?)
     }
 
     /// Prepares it for a method, the default one if `None`.
     ///
     /// # Errors
-    /// If the scene does not have the method, or the method refuses the parameters.
+    /// If the scene does not have the method, the parameters were set for another one, or the method
+    /// refuses them.
     pub fn prepare(
         &self,
         method: Option<&str>,
         parameters: &Parameters,
         precision: Precision,
     ) -> Result<Box<dyn Prepared>, SceneError> {
-        let method = method.unwrap_or(self.methods[0]);
-        if !self.methods.contains(&method) {
-            return Err(SceneError::Method {
-                scene: self.name,
-                method: method.to_owned(),
-                known: self.methods.join(", "),
-            });
+        let method = self.method(method)?;
+        let mut declared: Vec<_> = (method.parameters)().iter().map(|p| p.name).collect();
+        declared.sort_unstable();
+        if !parameters.iter().map(|(name, _)| name).eq(declared) {
+            return Err(SceneError::Parameters { scene: self.name, method: method.name });
         }
-        (self.prepare)(parameters, precision)
+        (method.prepare)(parameters, precision)
     }
+}
+
+/// Everything that is modelled, a line each, for checkpoints.
+fn description(scene: &str, method: &str, parameters: &Parameters, precision: Precision) -> String {
+    let precision = precision.name();
+    let mut text = format!("scene = {scene}\nmethod = {method}\nprecision = {precision}\n");
+    for (name, value) in parameters.iter() {
+        text += &format!("{name} = {value}\n");
+    }
+    text
 }

@@ -53,9 +53,10 @@ impl TaylorGreen {
         ]
     }
 
-    /// Pressure that belongs to the velocity in 2-D at time 0, over the density, mean zero.
-    pub fn pressure(&self, [x, y, _]: [f64; 3]) -> f64 {
-        -0.25 * ((2.0 * TAU * x).cos() + (2.0 * TAU * y).cos())
+    /// Pressure that belongs to the velocity at time 0, over the density, mean zero.
+    pub fn pressure(&self, [x, y, z]: [f64; 3]) -> f64 {
+        let sum = (2.0 * TAU * x).cos() + (2.0 * TAU * y).cos();
+        if self.dims == 2 { -0.25 * sum } else { sum * ((2.0 * TAU * z).cos() + 2.0) / 16.0 }
     }
 
     /// Rate at which the exact velocity decays in 2-D.
@@ -88,5 +89,28 @@ mod tests {
                 - laplacian / scene.reynolds;
             assert!(residual.abs() < 1e-5, "{residual}");
         }
+    }
+
+    /// laplace p = - du_i/dx_j du_j/dx_i in 3-D at time 0, by differences.
+    #[test]
+    fn the_pressure_in_space_is_that_of_the_velocity() {
+        let scene = TaylorGreen { dims: 3, reynolds: 100.0, resolution: 50.0 };
+        let (h, x) = (1e-3, [0.13, 0.37, 0.21]);
+        let moved = |a: usize, by: f64| {
+            let mut moved = x;
+            moved[a] += by;
+            moved
+        };
+        let gradient = [0, 1, 2].map(|a| {
+            let [p, m] = [h, -h].map(|by| scene.velocity(moved(a, by), 0.0));
+            [0, 1, 2].map(|i| (p[i] - m[i]) / (2.0 * h))
+        });
+        let (mut laplacian, mut source) = (0.0, 0.0);
+        for a in 0..3 {
+            let [p, m] = [h, -h].map(|by| scene.pressure(moved(a, by)));
+            laplacian += (p - 2.0 * scene.pressure(x) + m) / (h * h);
+            source -= (0..3).map(|b| gradient[a][b] * gradient[b][a]).sum::<f64>();
+        }
+        assert!((laplacian - source).abs() < 1e-2, "{laplacian} {source}");
     }
 }

@@ -56,5 +56,5 @@ pub(super) fn leapfrog<D: Domain>(
     }
     let step = step.stages_at(1.0, evaluation).stage_at(1.0, &Stage::update(correct)).build();
     let prologue = Step::builder().stages_at(0.0, evaluation).build();
-    Plan { prologue: Some(prologue), step }
+    Plan { prologue: Some(prologue), step, derived: None }
 }

@@ -146,16 +146,19 @@ impl std::str::FromStr for Integrator {
     }
 }
 
-/// A step, and what must be computed once before the first one.
+/// A step, what must be computed once before the first one, and what when somebody looks.
 pub struct Plan<D: Domain> {
     /// Run once before the first step, without advancing time.
     pub prologue: Option<Step<D>>,
     /// The step.
     pub step: Step<D>,
+    /// Rate stages that compute fields from the state for those who look at it: run before
+    /// monitors, dumps and criteria ([`crate::Simulation::derive`]), and in no other step.
+    pub derived: Option<Step<D>>,
 }
 
 impl<D: Domain> From<Step<D>> for Plan<D> {
     fn from(step: Step<D>) -> Self {
-        Self { prologue: None, step }
+        Self { prologue: None, step, derived: None }
     }
 }

@@ -128,6 +128,7 @@ impl<D: Domain> Run<D> {
             let stopped = self.stopped(asked, &course.watch)?;
             if stopped.is_some() {
                 self.take_dumps(course, true)?;
+                self.simulation.derive()?;
             }
             if let Some(checkpoints) = &mut self.checkpoints {
                 let clock = self.simulation.clock();
@@ -167,6 +168,7 @@ impl<D: Domain> Run<D> {
             let history = &mut self.histories[number];
             let mut values = Vec::with_capacity(history.columns().len());
             let name = || format!("monitor {}", history.name());
+            self.simulation.derive()?;
             look(&mut self.simulation, name, |whole| (monitor.probe)(whole, &mut values))?;
             history.push(step, time, &values);
             if let Some(writer) = &course.writer {
@@ -178,7 +180,7 @@ impl<D: Domain> Run<D> {
 
     /// Posts the dumps that are due.
     fn take_dumps(&mut self, course: &mut Course, is_last: bool) -> Result<(), RunFailure> {
-        let clock = self.simulation.clock();
+        let clock = &self.simulation.clock().clone();
         for (number, dump) in self.dumps.iter_mut().enumerate() {
             let is_due = dump.timetable.take(clock) || (is_last && dump.dump.has_last);
             if is_due
@@ -186,6 +188,7 @@ impl<D: Domain> Run<D> {
                 && let Some(writer) = &mut course.writer
             {
                 dump.shown = Some(clock.step());
+                self.simulation.derive()?;
                 let mut snapshot = writer.snapshot()?;
                 let ids = course.views[number].columns();
                 snapshot.take(clock.step(), clock.time(), self.simulation.columns(), ids);
@@ -216,6 +219,7 @@ impl<D: Domain> Run<D> {
             if criterion.timetable.take(self.simulation.clock()) {
                 let name = || "stop criterion".to_owned();
                 let histories = &self.histories;
+                self.simulation.derive()?;
                 met |= look(&mut self.simulation, name, |whole| {
                     (criterion.question)(whole, histories)
                 })?;

@@ -129,3 +129,29 @@ fn shapes_survive_serialisation() {
         assert_eq!(postcard::from_bytes(&bytes), Ok(shape));
     }
 }
+
+#[test]
+fn a_way_into_a_body_crosses_its_surface_once_before_its_end() {
+    for shape in shapes() {
+        let mut crossed = 0;
+        for (a, b) in points(2000).zip(points(2007).skip(7)) {
+            let along = |s: f64| [0, 1, 2].map(|k| a[k] + s * (b[k] - a[k]));
+            let is_inside = |s: f64| shape.contains(along(s));
+            match shape.crossing(a, b) {
+                Some(s) => {
+                    assert!((0.0..=1.0).contains(&s) && !is_inside(0.0));
+                    assert!(shape.signed_distance(along(s)).abs() < 1e-14, "{shape:?} {a:?} {b:?}");
+                    assert!((1..100).all(|k| !is_inside(s * 0.01 * f64::from(k) - 1e-14)));
+                    crossed += 1;
+                }
+                None => {
+                    assert!(
+                        is_inside(0.0) || (0..=100).all(|k| !is_inside(0.01 * f64::from(k))),
+                        "{shape:?} {a:?} {b:?}"
+                    );
+                }
+            }
+        }
+        assert!(crossed > 200, "{shape:?}: {crossed} ways crossed");
+    }
+}

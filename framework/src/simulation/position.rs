@@ -185,6 +185,7 @@ impl<D: Domain> Simulation<D> {
         self.clock = position.clock;
         self.pace_left = position.pace_left;
         self.begun = position.begun;
+        self.derived = false;
         self.end_time = position.end_time;
         self.instruction_sets = position.instruction_sets;
         let now = crate::lanes::instruction_set();

@@ -36,9 +36,7 @@ pub mod taylor_green;
 
 mod profile;
 
-use std::time::Duration;
-
-use finegrain_framework::run::{Dump, Every, Run, Summary, Until};
+use finegrain_framework::run::{Dump, Run, Summary};
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Integrator, Real, Simulation, State};
 use finegrain_sph::{
@@ -296,16 +294,11 @@ impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
         let workers = settings.workers;
         let simulation = Simulation::new(model, settings)
             .map_err(|cause| SceneError::Workers { workers, cause })?;
-        let end_time = orders.until.or(orders.steps.is_none().then(|| flow.end_time()));
-        let until = Until { steps: orders.steps, time: end_time, wall_clock: orders.wall_clock };
-        let mut run = Run::new(simulation).until(until).scene(description);
-        run = flow.observe(run, &fields, particle_mass);
-        if let Some(out) = orders.out {
+        let run = flow.observe(Run::new(simulation).scene(description), &fields, particle_mass);
+        let mut run = orders.plan(run, flow.end_time(), |every| {
             let dims = fields.velocity.len();
             let velocity = &["velocity_x", "velocity_y", "velocity_z"][..dims];
-            let every = orders.dump_every.map_or(Every::Time(0.1 * flow.end_time()), Every::Steps);
             let mut dump = Dump::new("fields", every)
-                .and_last()
                 .scalar("identity")
                 .scalar("density")
                 .vector("velocity", velocity.iter().copied());
@@ -315,19 +308,8 @@ impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
             if fields.energy.is_some() {
                 dump = dump.scalar("energy");
             }
-            // One at the end in any case, so that every run can be taken up again.
-            let every = Every::Steps(orders.checkpoint_every.unwrap_or(u64::MAX));
-            run = run.out(out).dump(dump).checkpoint(every, 3);
-        }
-        if let Some(restart) = orders.restart {
-            run = run.restart_from(restart);
-        }
-        if let Some(progress) = orders.progress {
-            run = run.progress(progress, Duration::from_millis(200));
-        }
-        if let Some(stops) = orders.stops {
-            run = run.stop_on(stops);
-        }
+            dump
+        });
         let summary = run.run()?;
         let mut report = Report::new(&summary, points);
         let simulation = run.simulation_mut();
@@ -372,11 +354,7 @@ fn picture<T: Real, P: Real>(
         .window([region.lower[0], region.lower[1]], [region.upper[0], region.upper[1]])
 }
 
-/// Everything that is modelled, a line each, for checkpoints.
+/// Everything that is modelled, for checkpoints.
 fn description(scene: &str, parameters: &Parameters, precision: super::Precision) -> String {
-    let mut text = format!("scene = {scene}\nmethod = sph\nprecision = {}\n", precision.name());
-    for (name, value) in parameters.iter() {
-        text += &format!("{name} = {value}\n");
-    }
-    text
+    super::description(scene, "sph", parameters, precision)
 }

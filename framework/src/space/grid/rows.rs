@@ -3,7 +3,7 @@
 use super::{Grid, Tile};
 use crate::columns::{Element, Rate, State};
 use crate::domain::Span;
-use crate::view::{Near, Own, Part, PartMut, Rates, View};
+use crate::view::{Near, Own, Part, PartMut, Rates, Reach, View};
 
 /// Rows of one column, read only, as far as they can be seen from one tile.
 pub struct Rows<'a, T> {
@@ -27,13 +27,7 @@ impl<'a, T> Rows<'a, T> {
     /// If the row lies beyond the stencil's reach.
     #[inline]
     pub fn get(&self, j: isize, k: isize) -> Option<&'a [T]> {
-        let grid = self.near.domain();
-        let [nx, ny, nz] = grid.shape;
-        let j = wrap(j, ny, grid.periodic[1])?;
-        let k = wrap(k, nz, grid.periodic[2])?;
-        let start = (k * ny + j) * nx;
-        let span = Span { start, end: start + nx };
-        Some(self.column.at(self.near.reach(grid.owner(j, k), span)))
+        Some(self.column.at(self.near.reach_row(j, k)?))
     }
 }
 
@@ -93,6 +87,21 @@ fn place(tile: &Tile<'_>, j: usize, k: usize) -> (usize, std::ops::Range<usize>)
 }
 
 impl<'a> Near<'a, Grid> {
+    /// Makes row j of plane k readable in any number of columns ([`View::at`]), for stages that read
+    /// many. Periodic directions wrap; `None` past a bounded end.
+    ///
+    /// # Panics
+    /// If the row lies beyond the stencil's reach.
+    #[inline]
+    pub fn reach_row(&self, j: isize, k: isize) -> Option<Reach<'a>> {
+        let grid = self.domain();
+        let [nx, ny, nz] = grid.shape;
+        let j = wrap(j, ny, grid.periodic[1])?;
+        let k = wrap(k, nz, grid.periodic[2])?;
+        let start = (k * ny + j) * nx;
+        Some(self.reach(grid.owner(j, k), Span { start, end: start + nx }))
+    }
+
     /// Rows of a state column, as far as they can be seen from here.
     ///
     /// # Panics

@@ -1,0 +1,61 @@
+//! Collisions: how populations relax towards equilibrium.
+
+mod bgk;
+mod regularised;
+mod trt;
+
+pub(crate) use bgk::Bgk;
+pub(crate) use regularised::Regularised;
+pub(crate) use trt::Trt;
+
+use finegrain_framework::pack::Pack;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{LbmError, positive};
+use crate::lattice::Lattice;
+
+/// Choice of a collision.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Collision {
+    /// One relaxation time (Bhatnagar, Gross & Krook 1954; Qian et al. 1992).
+    Bgk,
+    /// Two relaxation times (Ginzburg, Verhaeghe & d'Humieres 2008).
+    Trt {
+        /// `(tau_even - 1/2) (tau_odd - 1/2)`, above zero: with 3/16 half-way walls along the lattice
+        /// are where they should be, with 1/4 it is most stable.
+        magic: f64,
+    },
+    /// Recursive regularisation (Malaspinas 2015): what is beyond the stress is not relaxed but
+    /// computed anew.
+    Regularised,
+}
+
+impl Default for Collision {
+    fn default() -> Self {
+        Self::Trt { magic: 3.0 / 16.0 }
+    }
+}
+
+impl Collision {
+    pub(crate) fn check(&self) -> Result<(), LbmError> {
+        match *self {
+            Self::Trt { magic } => positive("magic", magic),
+            Self::Bgk | Self::Regularised => Ok(()),
+        }
+    }
+}
+
+/// A collision, in lattice units.
+pub(crate) trait Collide<T>: Copy + Send + Sync + 'static {
+    /// The populations after the collision, from those before it and the acceleration by the body
+    /// force.
+    fn collide<L: Lattice<Q>, V: Pack<Scalar = T>, const Q: usize>(
+        &self,
+        f: [V; Q],
+        acceleration: [V; 3],
+    ) -> [V; Q];
+}
+
+#[cfg(test)]
+mod tests;

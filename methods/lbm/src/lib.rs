@@ -1,0 +1,80 @@
+//! Lattice Boltzmann methods on the finegrain framework.
+//!
+//! Nearly incompressible flow by populations that stream from site to site and collide: D2Q9, D3Q19
+//! and D3Q27, `f32` and `f64`, several collisions, body forces, bodies with half-way or interpolated
+//! walls, forces by momentum exchange. Lengths, times and masses are physical; lattice units stay
+//! inside.
+//!
+//! | file | holds |
+//! |---|---|
+//! | [`lattice`] | velocities and weights |
+//! | [`mesh`] | sites and time step: the conversion of units |
+//! | `flow.rs` | density, velocity and equilibrium of a site |
+//! | `collision/` | one collision each, reading like its paper |
+//! | `stream.rs`, `around.rs` | the step: pull, collide, write, for packs of sites |
+//! | `sites.rs`, `link.rs` | what bodies do to rows of sites, and to populations |
+//! | [`start`] | consistent populations at the beginning |
+//! | `derived.rs`, [`measure`] | pressure and velocity; sums over the flow, forces on bodies |
+//! | [`physics`], [`body`], [`acceleration`] | what a scene models, and how |
+//! | [`model`] | builds a framework model of it |
+//!
+//! # Example
+//! A shear wave in a periodic box.
+//! ```
+//! use std::f64::consts::TAU;
+//!
+//! use finegrain_framework::{Settings, Simulation};
+//! use finegrain_lbm::{Fluid, LatticeKind, Lbm, Mesh, Physics, Scheme, Start, measure, mesh};
+//!
+//! let (spacing, viscosity) = (1.0 / 32.0, 0.01);
+//! let mesh = Mesh {
+//!     shape: [32, 32, 1],
+//!     corner: [0.0; 3],
+//!     spacing,
+//!     time_step: mesh::time_step_of_relaxation_time(spacing, viscosity, 0.6),
+//!     periodic: [true; 3],
+//! };
+//! let fluid = Fluid { density: 1000.0, kinematic_viscosity: viscosity, largest_speed: 0.1 };
+//! let start = Start::with_velocity(|[_, y, _]| [0.1 * (TAU * y).sin(), 0.0, 0.0]);
+//! let scheme = Scheme::on(LatticeKind::D2Q9);
+//! let lbm = Lbm::<f64>::new(&mesh, &fluid, &Physics::default(), &scheme, &start)?;
+//! let mut simulation = Simulation::new(lbm.model, Settings::default())?;
+//! simulation.advance(100)?;
+//! simulation.derive()?;
+//! let energy = measure::totals(&mut simulation.whole(), &lbm.parts).kinetic_energy;
+//! let decay = (-2.0 * viscosity * TAU * TAU * simulation.clock().time()).exp();
+//! assert!((energy / (2.5 * decay) - 1.0).abs() < 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod acceleration;
+pub mod body;
+pub mod collision;
+pub mod error;
+pub mod fields;
+pub mod lattice;
+pub mod measure;
+pub mod mesh;
+pub mod model;
+pub mod physics;
+pub mod start;
+
+mod around;
+mod derived;
+mod flow;
+mod link;
+mod sites;
+mod stream;
+
+pub use acceleration::AccelerationField;
+pub use body::{Body, Wall};
+pub use collision::Collision;
+pub use error::LbmError;
+pub use fields::Fields;
+pub use lattice::{Lattice, LatticeKind};
+pub use mesh::Mesh;
+pub use model::{Compiled, Lbm};
+pub use physics::{Fluid, Physics, Scheme};
+pub use start::Start;

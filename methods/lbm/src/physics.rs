@@ -1,0 +1,93 @@
+//! What a scene models, and how.
+
+use serde::{Deserialize, Serialize};
+
+use crate::acceleration::AccelerationField;
+use crate::body::{Body, Wall};
+use crate::collision::Collision;
+use crate::error::{LbmError, finite, not_negative, positive};
+use crate::lattice::LatticeKind;
+use crate::mesh::Mesh;
+
+/// Shortest relaxation time, in time steps: closer to 1/2 there is hardly any viscosity left to tell
+/// from the rounding of time step and spacing.
+const SHORTEST: f64 = 0.5001;
+/// Longest relaxation time: beyond, a disturbance crosses many cells before it relaxes.
+const LONGEST: f64 = 100.0;
+/// Largest Mach number: the equilibrium is a series in it.
+const FASTEST: f64 = 0.3;
+
+/// A fluid that is nearly incompressible because it is slow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fluid {
+    /// Reference density, kg/m^3.
+    pub density: f64,
+    /// Kinematic viscosity, m^2/s.
+    pub kinematic_viscosity: f64,
+    /// Largest speed that is expected, m/s: what the Mach number is of.
+    pub largest_speed: f64,
+}
+
+impl Fluid {
+    pub(crate) fn check(&self, mesh: &Mesh) -> Result<(), LbmError> {
+        positive("density", self.density)?;
+        positive("kinematic_viscosity", self.kinematic_viscosity)?;
+        not_negative("largest_speed", self.largest_speed)?;
+        let value = mesh.relaxation_time(self.kinematic_viscosity);
+        if !(SHORTEST..=LONGEST).contains(&value) {
+            return Err(LbmError::RelaxationTime { value, least: SHORTEST, most: LONGEST });
+        }
+        let value = mesh.mach(self.largest_speed);
+        if value > FASTEST * (1.0 + 1e-12) {
+            return Err(LbmError::Mach { value, speed: self.largest_speed, most: FASTEST });
+        }
+        Ok(())
+    }
+}
+
+/// What is modelled besides the fluid.
+#[derive(Clone, Debug, Default)]
+pub struct Physics {
+    /// Constant acceleration of the fluid, m/s^2; zero if none.
+    pub body_acceleration: [f64; 3],
+    /// Acceleration of the fluid that varies, besides.
+    pub acceleration_field: Option<AccelerationField>,
+    /// Bodies that do not move. Where several overlap, the fluid meets the one that comes first on
+    /// its way, or in this list.
+    pub bodies: Vec<Body>,
+}
+
+impl Physics {
+    pub(crate) fn check(&self) -> Result<(), LbmError> {
+        for acceleration in self.body_acceleration {
+            finite("body_acceleration", acceleration)?;
+        }
+        // Sites hold the number of their body in a byte, and 0 for none.
+        if self.bodies.len() > 255 {
+            return Err(LbmError::Bodies(self.bodies.len()));
+        }
+        for (number, body) in self.bodies.iter().enumerate() {
+            body.check(number)?;
+        }
+        Ok(())
+    }
+}
+
+/// How it is modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scheme {
+    /// The velocities.
+    pub lattice: LatticeKind,
+    /// How populations relax.
+    pub collision: Collision,
+    /// How they are turned back at bodies.
+    pub wall: Wall,
+}
+
+impl Scheme {
+    /// The default collision and walls on a lattice.
+    pub fn on(lattice: LatticeKind) -> Self {
+        Self { lattice, collision: Collision::default(), wall: Wall::default() }
+    }
+}

@@ -1,0 +1,230 @@
+//! What each row of sites consists of: runs of sites that only stream and collide, and single sites
+//! that need more, with their links.
+
+use finegrain_framework::Real;
+use finegrain_framework::pack::MOST_LANES;
+use finegrain_framework::shape::Shape;
+
+use crate::error::LbmError;
+use crate::lattice::SOUND_SPEED_SQUARED;
+use crate::link::{Cut, Link};
+use crate::mesh::Mesh;
+use crate::physics::{Physics, Scheme};
+
+/// Surfaces so close on a link, as a fraction of it, are met at once: in a corner rounding must not
+/// decide which body it is, or a lid would add mass at one end and not take it at the other.
+const TIE: f64 = 1e-9;
+
+/// All rows.
+#[derive(Debug, Default)]
+pub(crate) struct Sites<T> {
+    /// Row `r` has `runs[run_start[r]..run_start[r + 1]]`.
+    run_start: Vec<u32>,
+    runs: Vec<Run>,
+    /// Row `r` has `singles[single_start[r]..single_start[r + 1]]`.
+    single_start: Vec<u32>,
+    singles: Vec<Single>,
+    links: Vec<Link<T>>,
+}
+
+/// Sites next to one another that pull from sites of the fluid only and not around the ends of their
+/// row, at least [`MOST_LANES`] of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    pub start: u32,
+    pub end: u32,
+}
+
+/// Any other site of the fluid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Single {
+    pub x: u32,
+    first_link: u32,
+    links: u32,
+}
+
+impl<T> Sites<T> {
+    /// The runs of row number `row`.
+    pub fn runs(&self, row: usize) -> &[Run] {
+        &self.runs[self.run_start[row] as usize..self.run_start[row + 1] as usize]
+    }
+
+    /// Its single sites.
+    pub fn singles(&self, row: usize) -> &[Single] {
+        &self.singles[self.single_start[row] as usize..self.single_start[row + 1] as usize]
+    }
+
+    /// The links of a single site.
+    pub fn links(&self, single: &Single) -> &[Link<T>] {
+        let first = single.first_link as usize;
+        &self.links[first..first + single.links as usize]
+    }
+}
+
+/// Of each site the number of the body that it is in, from 1; 0 in the fluid.
+pub(crate) fn solid(mesh: &Mesh, physics: &Physics) -> Result<Vec<u8>, LbmError> {
+    let mut solid = vec![0; mesh.sites()];
+    for (number, body) in (1..).zip(&physics.bodies) {
+        let images = images(mesh);
+        for z in 0..mesh.shape[2] {
+            for y in 0..mesh.shape[1] {
+                for x in 0..mesh.shape[0] {
+                    let place = &mut solid[mesh.number([x, y, z])];
+                    let position = mesh.position([x, y, z].map(|i| i as isize));
+                    if *place == 0 && images.iter().any(|&i| contains(&body.shape, position, i)) {
+                        *place = number;
+                    }
+                }
+            }
+        }
+    }
+    if solid.iter().all(|&body| body > 0) { Err(LbmError::Full) } else { Ok(solid) }
+}
+
+/// Shifts, in m, through which a body is seen in the periodic directions.
+fn images(mesh: &Mesh) -> Vec<[f64; 3]> {
+    let mut images = vec![[0.0; 3]];
+    for a in 0..3 {
+        // A plane has no thickness.
+        if mesh.periodic[a] && (a < 2 || mesh.shape[a] > 1) {
+            let period = mesh.shape[a] as f64 * mesh.spacing;
+            for image in images.clone() {
+                for shift in [-period, period] {
+                    let mut shifted = image;
+                    shifted[a] = shift;
+                    images.push(shifted);
+                }
+            }
+        }
+    }
+    images
+}
+
+fn contains(shape: &Shape, position: [f64; 3], image: [f64; 3]) -> bool {
+    shape.contains(back(position, image))
+}
+
+/// A point as it lies to a body of which an image is looked at.
+fn back(position: [f64; 3], image: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|a| position[a] - image[a])
+}
+
+impl<T: Real> Sites<T> {
+    /// Finds runs, single sites and links.
+    pub fn new(
+        mesh: &Mesh,
+        physics: &Physics,
+        scheme: &Scheme,
+        solid: &[u8],
+    ) -> Result<Self, LbmError> {
+        let mut sites = Self { run_start: vec![0], single_start: vec![0], ..Self::default() };
+        let survey = Survey { mesh, physics, scheme, solid, images: images(mesh) };
+        let mut cuts = Vec::new();
+        for z in 0..mesh.shape[2] {
+            for y in 0..mesh.shape[1] {
+                let mut run = 0..0;
+                for x in 0..mesh.shape[0] {
+                    if solid[mesh.number([x, y, z])] > 0 {
+                        sites.close(&mut run);
+                        continue;
+                    }
+                    survey.cuts([x, y, z], &mut cuts)?;
+                    let at_end = x == 0 || x + 1 == mesh.shape[0];
+                    if cuts.is_empty() && !at_end {
+                        if run.is_empty() {
+                            run = x..x;
+                        }
+                        run.end = x + 1;
+                    } else {
+                        sites.close(&mut run);
+                        sites.single(x, cuts.iter().map(|cut| Link::new(cut, scheme.wall)));
+                    }
+                }
+                sites.close(&mut run);
+                sites.run_start.push(sites.runs.len() as u32);
+                sites.single_start.push(sites.singles.len() as u32);
+            }
+        }
+        Ok(sites)
+    }
+
+    /// Ends a run; one that does not fill a pack becomes single sites.
+    fn close(&mut self, run: &mut std::ops::Range<usize>) {
+        if run.len() >= MOST_LANES {
+            self.runs.push(Run { start: run.start as u32, end: run.end as u32 });
+        } else {
+            for x in run.clone() {
+                self.single(x, []);
+            }
+        }
+        *run = 0..0;
+    }
+
+    fn single(&mut self, x: usize, links: impl IntoIterator<Item = Link<T>>) {
+        let first_link = self.links.len() as u32;
+        self.links.extend(links);
+        let links = self.links.len() as u32 - first_link;
+        self.singles.push(Single { x: x as u32, first_link, links });
+    }
+}
+
+/// What cuts are found from.
+struct Survey<'a> {
+    mesh: &'a Mesh,
+    physics: &'a Physics,
+    scheme: &'a Scheme,
+    solid: &'a [u8],
+    images: Vec<[f64; 3]>,
+}
+
+impl Survey<'_> {
+    /// The cuts of a site of the fluid.
+    fn cuts(&self, site: [usize; 3], cuts: &mut Vec<Cut>) -> Result<(), LbmError> {
+        cuts.clear();
+        let here = site.map(|i| i as isize);
+        for (q, c) in self.scheme.lattice.velocities().iter().enumerate().skip(1) {
+            let along = |sign: isize| [0, 1, 2].map(|a| here[a] + sign * c[a] as isize);
+            let from = along(-1);
+            if self.is_fluid(from) {
+                continue;
+            }
+            let (body, fraction) = self.surface(here, from)?;
+            let velocity = self.physics.bodies[body].surface_velocity;
+            let unit = self.mesh.unit_velocity();
+            let sliding: f64 = (0..3).map(|a| f64::from(c[a]) * velocity[a] / unit).sum();
+            let weight = self.scheme.lattice.weights()[q];
+            cuts.push(Cut {
+                q,
+                body,
+                fraction,
+                has_far: self.is_fluid(along(1)),
+                sliding: 2.0 * weight * sliding / SOUND_SPEED_SQUARED,
+            });
+        }
+        Ok(())
+    }
+
+    fn is_fluid(&self, site: [isize; 3]) -> bool {
+        self.mesh.wrap(site).is_some_and(|site| self.solid[self.mesh.number(site)] == 0)
+    }
+
+    /// The body that the way between two sites meets first, and where on the way.
+    fn surface(&self, here: [isize; 3], from: [isize; 3]) -> Result<(usize, f64), LbmError> {
+        let (start, end) = (self.mesh.position(here), self.mesh.position(from));
+        let mut first: Option<(usize, f64)> = None;
+        for (number, body) in self.physics.bodies.iter().enumerate() {
+            for &image in &self.images {
+                let crossing = body.shape.crossing(back(start, image), back(end, image));
+                // Rounding may put a surface through a site just beyond the end of the way.
+                let crossing =
+                    crossing.or_else(|| contains(&body.shape, end, image).then_some(1.0));
+                if let Some(fraction) = crossing
+                    && first.is_none_or(|(_, least)| fraction < least - TIE)
+                {
+                    first = Some((number, fraction));
+                }
+            }
+        }
+        first.ok_or(LbmError::Open { position: end })
+    }
+}

@@ -1,0 +1,99 @@
+//! The same flow gives the same bits for any number of workers, schedule and hand-out order.
+
+use std::f64::consts::TAU;
+
+use finegrain_framework::shape::{Axis, Shape};
+use finegrain_framework::{HandOut, Schedule, Settings, Simulation};
+use finegrain_lbm::{
+    AccelerationField, Body, Collision, Compiled, Fluid, LatticeKind, Lbm, Mesh, Physics, Scheme,
+    Start,
+};
+
+/// Everything at once: walls that slide, a curved body across a periodic end, a force that varies.
+fn model<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
+    let depth = if lattice.dims() == 2 { 1 } else { 11 };
+    let mesh = Mesh {
+        shape: [45, 21, depth],
+        corner: [0.0; 3],
+        spacing: 0.1,
+        time_step: 0.01,
+        periodic: [true, false, true],
+    };
+    let fluid = Fluid { density: 2.0, kinematic_viscosity: 0.05, largest_speed: 0.5 };
+    let wall = |y: f64, up: f64| Shape::HalfSpace { point: [0.0, y, 0.0], outward: [0.0, up, 0.0] };
+    let post = Shape::Cylinder { axis: Axis::Z, centre: [4.4, 1.0, 0.0], radius: 0.33 };
+    let physics = Physics {
+        body_acceleration: [0.1, 0.0, 0.0],
+        acceleration_field: Some(AccelerationField::new(|[x, y, _], t| {
+            [0.1 * (x + t).sin(), 0.1 * (y - t).cos(), 0.0]
+        })),
+        bodies: vec![
+            wall(0.03, 1.0).into(),
+            Body { shape: wall(2.08, -1.0), surface_velocity: [0.3, 0.0, 0.0] },
+            post.into(),
+        ],
+    };
+    let scheme = Scheme { collision, ..Scheme::on(lattice) };
+    let start = Start::with_velocity(|[x, _, _]| [0.0, 0.1 * (TAU * x / 4.5).sin(), 0.0]);
+    Lbm::new(&mesh, &fluid, &physics, &scheme, &start).unwrap()
+}
+
+fn same_bits<T: Compiled>(lattice: LatticeKind, collision: Collision) {
+    let hash = |settings: Settings| {
+        let lbm = model::<T>(lattice, collision);
+        let mut simulation = Simulation::new(lbm.model, settings).unwrap();
+        simulation.advance(25).unwrap();
+        simulation.state_hash()
+    };
+    let serial = Settings { schedule: Schedule::Serial, workers: 1, ..Settings::default() };
+    let expected = hash(serial);
+    for schedule in Schedule::ALL {
+        for workers in [1, 2, 3, 8] {
+            for hand_out in [HandOut::Natural, HandOut::Shuffled { seed: 3 }] {
+                let settings = Settings { schedule, workers, hand_out, ..Settings::default() };
+                assert_eq!(hash(settings.clone()), expected, "{settings:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn in_the_plane() {
+    same_bits::<f64>(LatticeKind::D2Q9, Collision::default());
+    same_bits::<f64>(LatticeKind::D2Q9, Collision::Bgk);
+}
+
+#[test]
+fn in_space() {
+    same_bits::<f64>(LatticeKind::D3Q19, Collision::default());
+    same_bits::<f64>(LatticeKind::D3Q27, Collision::Regularised);
+}
+
+#[test]
+fn in_single_precision() {
+    same_bits::<f32>(LatticeKind::D3Q19, Collision::default());
+    same_bits::<f32>(LatticeKind::D2Q9, Collision::Regularised);
+}
+
+/// From a checkpoint written in the middle, with the populations in either set of columns.
+#[test]
+fn after_a_restart() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = |settings| {
+        let lbm = model::<f64>(LatticeKind::D2Q9, Collision::default());
+        Simulation::new(lbm.model, settings).unwrap()
+    };
+    let mut whole = start(Settings::default());
+    whole.advance(25).unwrap();
+    for steps in [0, 7, 12] {
+        let path = folder.path().join(format!("{steps}.ckpt"));
+        let mut first = start(Settings::default());
+        first.advance(steps).unwrap();
+        first.save(&path, 1).unwrap();
+        let other = Settings { schedule: Schedule::PeerToPeer, workers: 3, ..Settings::default() };
+        let mut second = start(other);
+        second.restore(&path, 1).unwrap();
+        second.advance(25 - steps).unwrap();
+        assert_eq!(second.state_hash(), whole.state_hash(), "from step {steps}");
+    }
+}

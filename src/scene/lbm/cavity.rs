@@ -1,0 +1,148 @@
+//! The lid-driven cavity on a lattice, with walls half-way between sites.
+
+use finegrain_framework::Simulation;
+use finegrain_framework::run::{Every, Run, Stopped, Summary};
+use finegrain_framework::shape::Shape;
+use finegrain_framework::space::Grid;
+use finegrain_lbm::mesh::time_step_of_mach;
+use finegrain_lbm::model::Parts;
+use finegrain_lbm::{Body, Compiled, Fluid, LatticeKind, Mesh, Physics, Start, measure};
+
+use super::{Final, Flow, LbmScene};
+use crate::scene::cavity::{self, Cavity};
+use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::{Precision, Report, SceneError};
+
+/// All parameters.
+pub fn parameters() -> Vec<Parameter> {
+    let own = [super::WALL, super::MACH];
+    [&cavity::PARAMETERS[..], &super::COLLISION, &own].concat()
+}
+
+prepare_with!(build);
+
+fn build<T: Compiled>(
+    parameters: &Parameters,
+    precision: Precision,
+) -> Result<LbmScene<T, CavityFlow>, SceneError> {
+    let scene = Cavity::new(parameters);
+    let spacing = 1.0 / scene.resolution;
+    let n = scene.resolution as usize;
+    let mesh = Mesh {
+        shape: [n, n, 1],
+        corner: [0.0; 3],
+        spacing,
+        time_step: time_step_of_mach(spacing, 1.0, parameters.number("mach")),
+        periodic: [false, false, true],
+    };
+    let fluid = Fluid { density: 1.0, kinematic_viscosity: scene.viscosity(), largest_speed: 1.0 };
+    let wall = |point: [f64; 3], outward: [f64; 3]| Shape::HalfSpace { point, outward };
+    let lid = wall([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
+    let physics = Physics {
+        bodies: vec![
+            wall([0.0; 3], [1.0, 0.0, 0.0]).into(),
+            wall([0.0; 3], [0.0, 1.0, 0.0]).into(),
+            wall([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]).into(),
+            Body { shape: lid, surface_velocity: [1.0, 0.0, 0.0] },
+        ],
+        ..Physics::default()
+    };
+    super::scene(
+        CavityFlow { scene },
+        &mesh,
+        fluid,
+        &physics,
+        &super::scheme(parameters, LatticeKind::D2Q9, true),
+        &Start::default(),
+        super::description("cavity", parameters, precision),
+    )
+}
+
+struct CavityFlow {
+    scene: Cavity,
+}
+
+impl<T: Compiled> Flow<T> for CavityFlow {
+    /// Long after it should be steady.
+    fn end_time(&self) -> f64 {
+        50.0 + self.scene.reynolds
+    }
+
+    /// Steady when the kinetic energy changes by less than a part in 10^5 in a time unit: disturbances
+    /// decay at least as fast as `exp(-2 pi^2 t / Re)`, so it is then within some parts in 10^5 of its
+    /// final value at Re = 100.
+    fn observe(&self, run: Run<Grid>, parts: &Parts<T>) -> Run<Grid> {
+        let parts = parts.clone();
+        let columns = ["kinetic_energy", "largest_speed", "excess_mass"];
+        run.monitor("flow", Every::Time(1.0), columns, move |whole| {
+            let totals = measure::totals(whole, &parts);
+            let speed = measure::largest_speed(whole, &parts);
+            [totals.kinetic_energy, speed, totals.excess_mass]
+        })
+        .stop_when(Every::Time(1.0), |_, histories| {
+            let energy: Vec<f64> =
+                histories[0].column("kinetic_energy").map(Iterator::collect).unwrap_or_default();
+            matches!(energy[..], [.., before, now] if (now - before).abs() < 1e-5 * now)
+        })
+    }
+
+    /// Extrema of the velocity on the lines through the middle.
+    fn judge(
+        &self,
+        report: &mut Report,
+        summary: &Summary,
+        simulation: &mut Simulation<Grid>,
+        lbm: &Final<T>,
+    ) {
+        let n = self.scene.resolution as usize;
+        // Between two sites, unless there is one in the middle.
+        let middle = [(n - 1) / 2, n / 2];
+        let mean = |site: &dyn Fn(usize) -> [usize; 3], a: usize| -> f64 {
+            0.5 * middle.iter().map(|&m| lbm.velocity(simulation, site(m))[a]).sum::<f64>()
+        };
+        let u: Vec<f64> = (0..n).map(|y| mean(&|x| [x, y, 0], 0)).collect();
+        let v: Vec<f64> = (0..n).map(|x| mean(&|y| [x, y, 0], 1)).collect();
+        let is_steady = summary.stopped == Stopped::Criterion;
+        if !is_steady {
+            report.notes.push("not steady: no errors are given".to_owned());
+        }
+        let reference = self.scene.reference().filter(|_| is_steady);
+        let negative: Vec<f64> = v.iter().map(|v| -v).collect();
+        let u_min = -largest(&u.iter().map(|u| -u).collect::<Vec<_>>());
+        report.result("u_min", u_min, reference.map(|r| r.u_min));
+        report.result("v_max", largest(&v), reference.map(|r| r.v_max));
+        report.result("v_min", -largest(&negative), reference.map(|r| r.v_min));
+    }
+
+    fn title(&self) -> String {
+        format!("Lid-driven cavity, Re = {}", self.scene.reynolds)
+    }
+}
+
+/// The top of the parabola through the largest value and its neighbours.
+fn largest(values: &[f64]) -> f64 {
+    let mut at = 0;
+    for (i, value) in values.iter().enumerate() {
+        if *value > values[at] {
+            at = i;
+        }
+    }
+    if at == 0 || at + 1 == values.len() {
+        return values[at];
+    }
+    let [before, here, after] = [values[at - 1], values[at], values[at + 1]];
+    let (slope, curvature) = (0.5 * (after - before), before - 2.0 * here + after);
+    if curvature < 0.0 { here - 0.5 * slope * slope / curvature } else { here }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_top_of_a_parabola_is_found_between_points() {
+        let values: Vec<f64> = (0..9).map(|i| 3.0 - (f64::from(i) - 4.3).powi(2)).collect();
+        assert!((largest(&values) - 3.0).abs() < 1e-14);
+        assert_eq!(largest(&[2.0, 1.0, 0.0]), 2.0);
+    }
+}

@@ -1,0 +1,79 @@
+//! The scenes by lattice Boltzmann: the errors that they report against their references, and how
+//! they fall.
+
+use std::collections::BTreeMap;
+
+use finegrain::scene::{Orders, Precision, Report, Scene};
+
+fn run(scene: &str, settings: &[(&str, &str)], orders: Orders) -> Report {
+    let scene = Scene::find(scene).unwrap();
+    let parameters = scene.set_for(Some("lbm"), settings.iter().copied()).unwrap();
+    scene.prepare(Some("lbm"), &parameters, Precision::F64).unwrap().run(orders).unwrap()
+}
+
+fn errors(scene: &str, settings: &[(&str, &str)]) -> BTreeMap<&'static str, f64> {
+    run(scene, settings, Orders::default()).errors
+}
+
+#[test]
+fn flow_between_plates_starts_as_the_series_says_in_second_order() {
+    for scene in ["couette", "poiseuille"] {
+        let [coarse, fine] =
+            ["16", "32"].map(|n| errors(scene, &[("resolution", n)])["velocity_l2"]);
+        let order = (coarse / fine).log2();
+        assert!(fine < 1e-3 && order > 1.9, "{scene}: {coarse} {fine}");
+    }
+}
+
+/// Diffusive scaling: the Mach number falls with the spacing.
+#[test]
+fn vortices_decay_in_second_order() {
+    let at = |n, mach| errors("taylor-green", &[("resolution", n), ("mach", mach)]);
+    let (coarse, fine) = (at("16", "0.1"), at("32", "0.05"));
+    for name in ["velocity_l2", "decay_rate"] {
+        let order = (coarse[name] / fine[name]).abs().log2();
+        assert!((order - 2.0).abs() < 0.15, "{name}: {coarse:?} {fine:?}");
+    }
+    assert!(fine["velocity_l2"] < 0.01, "{fine:?}");
+}
+
+#[test]
+fn a_checkpoint_is_gone_on_from_with_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = [("resolution", "20")];
+    let until = |steps, restart, workers| Orders {
+        steps: Some(steps),
+        workers: Some(workers),
+        out: Some(folder.path().join(steps.to_string())),
+        restart,
+        ..Orders::default()
+    };
+    let whole = run("cylinder", &settings, until(31, None, 1));
+    let half = run("cylinder", &settings, until(14, None, 2));
+    let is_checkpoint = |f: &&std::path::PathBuf| f.extension().is_some_and(|e| e == "ckpt");
+    let checkpoint = half.files.iter().find(is_checkpoint).cloned();
+    let again = run("cylinder", &settings, until(31, Some(checkpoint.unwrap()), 3));
+    assert_eq!(again.state_hash, whole.state_hash);
+}
+
+#[test]
+fn what_the_method_cannot_do_is_refused_with_the_range() {
+    let refused = |scene: &str, settings: &[(&str, &str)]| {
+        let scene = Scene::find(scene).unwrap();
+        let parameters = scene.set_for(Some("lbm"), settings.iter().copied()).unwrap();
+        match scene.prepare(Some("lbm"), &parameters, Precision::F64) {
+            Ok(_) => panic!("must be refused"),
+            Err(error) => error.to_string(),
+        }
+    };
+    let said = refused("cylinder", &[("relaxation_time", "0.5")]);
+    assert!(said.contains("between 0.5001 and 100"), "{said}");
+    let said = refused("taylor-green", &[("reynolds", "0.01"), ("resolution", "400")]);
+    assert!(said.contains("relaxation time"), "{said}");
+    let said = refused("shear-wave", &[("relaxation_time", "50"), ("resolution", "8")]);
+    assert!(said.contains("Mach number"), "{said}");
+    let scene = Scene::find("cavity").unwrap();
+    let of_sph = scene.set([]).unwrap();
+    let said = scene.prepare(Some("lbm"), &of_sph, Precision::F64).err().unwrap().to_string();
+    assert!(said.contains("not the parameters of scene \"cavity\" for method \"lbm\""), "{said}");
+}
