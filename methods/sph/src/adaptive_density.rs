@@ -96,17 +96,12 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for AdaptiveDensity<T
         let density = near.state(self.density).own().whole();
         let solver = &self.solver;
         let range = solver.kernel.support() * solver.kernel.longest;
-        let (arch, first) = (pulp::Arch::new(), near.spans()[0].start);
+        let first = near.spans()[0].start;
         for cell in block.cells() {
             scratch.candidates.collect(&self.gathered, near, &block, cell, range);
             let own = cell.span.start - first..cell.span.end - first;
-            let task = Task {
-                solver,
-                density: &density[own.clone()],
-                written: [&mut smoothing_length[own.clone()], &mut grad_h[own.clone()]],
-                scratch,
-            };
-            if let Err((k, needed)) = arch.dispatch(task) {
+            let written = [&mut smoothing_length[own.clone()], &mut grad_h[own.clone()]];
+            if let Err((k, needed)) = solver.write(&density[own.clone()], written, scratch) {
                 return Err(self.fault(near, own.start + k, needed));
             }
         }
@@ -125,8 +120,20 @@ struct Solver<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Solver<T, D> {
-    /// All particles of a cell; in error, the number of one in the cell and the smoothing length it
-    /// would need.
+    /// All particles of a cell, by the best instructions of this processor; in error, the number of
+    /// one in the cell and the smoothing length it would need.
+    ///
+    /// Not inlined, so that it is compiled once, and not again for every type of positions.
+    #[inline(never)]
+    fn write(
+        &self,
+        density: &[T],
+        written: [&mut [T]; 2],
+        scratch: &mut Scratch<T, D>,
+    ) -> Result<(), (usize, T)> {
+        pulp::Arch::new().dispatch(Task { solver: self, density, written, scratch })
+    }
+
     #[inline(always)]
     fn run(
         &self,

@@ -35,8 +35,22 @@ pub(crate) struct Sums<T, const D: usize> {
 pub(crate) type Written<'a, T> = [&'a mut [T]; Quantity::COUNT];
 
 impl<T: Real, const D: usize> Sums<T, D> {
-    /// Sums of the `count` particles of the cell whose candidates were collected, written from
-    /// `place` on.
+    /// Sums of the `count` particles of the cell whose candidates are in the scratch, written from
+    /// `place` on, by the best instructions of this processor.
+    ///
+    /// Not inlined, so that it is compiled once, and not again for every type of positions.
+    #[inline(never)]
+    pub fn write(
+        &self,
+        count: usize,
+        place: usize,
+        written: &mut Written<'_, T>,
+        scratch: &mut Scratch<T, D>,
+        time: f64,
+    ) {
+        pulp::Arch::new().dispatch(Task { sums: self, count, place, written, scratch, time });
+    }
+
     #[inline(always)]
     fn run(
         &self,
@@ -133,15 +147,13 @@ impl<T: Real, const D: usize> Default for Scratch<T, D> {
 }
 
 /// One cell's share of a sweep, to be compiled for every instruction set.
-pub(crate) struct Task<'s, 'n, T: Real, const D: usize> {
-    pub sums: &'s Sums<T, D>,
-    /// Number of particles of the cell, whose candidates are in the scratch.
-    pub count: usize,
-    /// Place of the first of them in the sub-domain.
-    pub place: usize,
-    pub written: &'s mut Written<'n, T>,
-    pub scratch: &'s mut Scratch<T, D>,
-    pub time: f64,
+struct Task<'s, 'n, T: Real, const D: usize> {
+    sums: &'s Sums<T, D>,
+    count: usize,
+    place: usize,
+    written: &'s mut Written<'n, T>,
+    scratch: &'s mut Scratch<T, D>,
+    time: f64,
 }
 
 impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {

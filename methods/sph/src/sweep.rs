@@ -11,7 +11,7 @@ use crate::candidates::Gathered;
 use crate::fields::Fields;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::Quantity;
-use crate::sums::{Scratch, Sums, Task, Written};
+use crate::sums::{Scratch, Sums, Written};
 use crate::term::{AnyTerm, Term};
 use crate::wall::Friction;
 
@@ -102,7 +102,6 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for Sweep<T, P, D> {
         for (column, &rate) in written.iter_mut().zip(&self.outputs) {
             *column = rates.column(rate).whole();
         }
-        let arch = pulp::Arch::new();
         let range = self.sums.kernels.range();
         let first = near.spans()[0].start;
         let own_depth = self.gathered.wall_depth().map(|depth| near.state(depth).own().whole());
@@ -117,8 +116,7 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for Sweep<T, P, D> {
                 continue;
             }
             scratch.candidates.collect(&self.gathered, near, &block, cell, range);
-            let (sums, written, time) = (&self.sums, &mut written, moment.stage_time);
-            arch.dispatch(Task { sums, count, place, written, scratch, time });
+            self.sums.write(count, place, &mut written, scratch, moment.stage_time);
         }
         Ok(())
     }
