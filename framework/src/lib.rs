@@ -14,6 +14,7 @@
 //! | divide space | [`space::Grid`], [`space::Cells`], [`space::Independent`], or a [`Domain`] of your own |
 //! | declare fields | [`Columns::state`], [`Columns::rate`] |
 //! | write physics | [`RateStage`], [`UpdateStage`]; whole-domain work in a [`WholeStage`] |
+//! | vectorise it where the compiler does not | [`pack`], [`lanes`] |
 //! | build a step | [`Integrator::plan`], or [`Step::builder`] |
 //! | run it | [`Simulation`]; with outputs, checkpoints and restart [`run::Run`] |
 //!

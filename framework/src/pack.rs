@@ -226,7 +226,7 @@ mod tests {
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> usize {
             let lanes = <T::Pack<S> as Pack>::LANES;
-            assert!(lanes <= MOST_LANES && MOST_LANES % lanes == 0);
+            assert!(lanes <= MOST_LANES && MOST_LANES.is_multiple_of(lanes));
             let x = T::Pack::<S>::packs(simd, self.x);
             for (y, &x) in T::Pack::<S>::packs_mut(simd, self.y).iter_mut().zip(x) {
                 let (a, b) = (T::Pack::<S>::of(simd, x), T::Pack::<S>::of(simd, *y));

@@ -108,7 +108,7 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
         self.packs::<V>(simd, [start, end], from, to, acceleration);
         // The last pack overlaps the one before: the same numbers are computed from what has not
         // been touched.
-        if (end - start) % V::LANES != 0 {
+        if !(end - start).is_multiple_of(V::LANES) {
             self.packs::<V>(simd, [end - V::LANES, end], from, to, acceleration);
         }
     }

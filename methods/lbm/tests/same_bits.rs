@@ -42,7 +42,7 @@ fn same_bits<T: Compiled>(lattice: LatticeKind, collision: Collision) {
     let hash = |settings: Settings| {
         let lbm = model::<T>(lattice, collision);
         let mut simulation = Simulation::new(lbm.model, settings).unwrap();
-        simulation.advance(25).unwrap();
+        simulation.advance(13).unwrap();
         simulation.state_hash()
     };
     let serial = Settings { schedule: Schedule::Serial, workers: 1, ..Settings::default() };

@@ -73,7 +73,7 @@ const LATTICE: Parameter =
 const RELAXATION_TIME: Parameter = Parameter::number(
     "relaxation_time",
     0.8,
-    [0.5, 100.0],
+    [0.5001, 100.0],
     "",
     "of the viscosity, in time steps: the time step follows from it",
 );
