@@ -166,8 +166,8 @@ impl<D: Domain> Simulation<D> {
         Ok(())
     }
 
-    /// Brings the derived fields ([`crate::Plan::derived`]) up to date with the present state; costs nothing
-    /// if they are. [`crate::run::Run`] does so before anybody looks.
+    /// Brings the derived fields ([`crate::Plan::derived`]) up to date with the present state; costs
+    /// nothing if they are. [`crate::run::Run`] does so before anybody looks.
     ///
     /// # Errors
     /// As [`Simulation::advance`].

@@ -180,9 +180,9 @@ impl<D: Domain> Run<D> {
 
     /// Posts the dumps that are due.
     fn take_dumps(&mut self, course: &mut Course, is_last: bool) -> Result<(), RunFailure> {
-        let clock = &self.simulation.clock().clone();
+        let clock = *self.simulation.clock();
         for (number, dump) in self.dumps.iter_mut().enumerate() {
-            let is_due = dump.timetable.take(clock) || (is_last && dump.dump.has_last);
+            let is_due = dump.timetable.take(&clock) || (is_last && dump.dump.has_last);
             if is_due
                 && dump.shown != Some(clock.step())
                 && let Some(writer) = &mut course.writer
