@@ -11,6 +11,7 @@ use crate::kernel::Kernel;
 use crate::physics::{Fluid, Physics, Viscosity};
 use crate::quantity::Quantity;
 use crate::scheme::{Density, Gradient, PressureForm, Scheme};
+use crate::start::Start;
 use crate::state_equation::Thermodynamics;
 use crate::surface_distance::SurfaceDistance;
 use crate::term::continuity::Continuity;
@@ -83,15 +84,15 @@ fn pieces_of_bodies<T: Real, P: Real>(
 
 /// The pieces that `physics` and `scheme` name for a liquid; terms in the order in which they are added.
 pub(crate) fn pieces<T: Real, P: Real>(
+    start: &Start,
     fluid: &Fluid,
     physics: &Physics,
     scheme: &Scheme,
     kernel: &Kernel<T>,
     walls: &Arc<Walls>,
-    spacing: f64,
-    mass: f64,
-    dims: usize,
 ) -> Vec<Piece<T, P>> {
+    let mass = fluid.density * start.particle_volume;
+    let (spacing, dims) = (start.spacing, start.region.lower.len());
     let viscosity = physics.viscosity.map_or(0.0, |_| fluid.density * fluid.kinematic_viscosity);
     let (mass, dynamic_viscosity) = (T::of(mass), T::of(viscosity));
     let in_bodies = velocity_in_bodies(physics, scheme);

@@ -182,10 +182,7 @@ fn build<T: Real, P: Real, const D: usize>(
         }
         _ => {
             let kernel = Kernel::new(scheme.kernel, dimension, T::of(smoothing_length));
-            let spacing = start.spacing;
-            let (dims, mass) = (D, particle_mass);
-            let pieces =
-                liquid::pieces(fluid, physics, scheme, &kernel, &walls, spacing, mass, dims);
+            let pieces = liquid::pieces(start, fluid, physics, scheme, &kernel, &walls);
             (Kernels::Uniform(kernel), pieces)
         }
     };
