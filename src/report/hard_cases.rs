@@ -101,7 +101,7 @@ pub const HARD_CASES: [HardCase; 7] = [
         until: 700.0,
         variants: BETWEEN_WALLS,
         signs: &[
-            Sign { result: "traction", least: 0.9, most: 1.1, symptom: "momentum lost" },
+            Sign { result: "momentum_balance", least: -0.1, most: 0.1, symptom: "momentum lost" },
             CLUMPING,
         ],
     },

@@ -11,6 +11,7 @@ use finegrain_framework::shape::{Axis, Shape};
 use profiles::{RE_0_03, RE_1, Station};
 
 use super::parameter::{Parameter, Parameters};
+use super::report::Report;
 
 mod profiles;
 
@@ -110,6 +111,17 @@ impl Cylinder {
         // the defaults come to rounds to a little more than 5).
         let creeping = CREEPING.iter().find(|(phi, _)| is(self.solid_fraction, *phi))?;
         (forcing < 5.001).then_some(creeping.1)
+    }
+}
+
+/// Adds `momentum_balance`: the `force` on the cylinder over the `driving` one on the fluid, less one,
+/// which is an error where the flow is steady.
+pub fn judge_momentum(report: &mut Report, force: f64, driving: f64, is_steady: bool) {
+    let excess = force / driving - 1.0;
+    if is_steady {
+        report.error("momentum_balance", excess);
+    } else {
+        report.result("momentum_balance", excess, None);
     }
 }
 

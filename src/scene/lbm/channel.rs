@@ -132,8 +132,7 @@ impl<T: Compiled> Flow<T> for ChannelFlow {
             along = along.max(u.abs());
         }
         let error = (difference / norm).sqrt();
-        report.results.insert("velocity_l2", error);
-        report.errors.insert("velocity_l2", error);
+        report.error("velocity_l2", error);
         report.result("cross_flow", across / along, None);
         report.result("largest_velocity", along, None);
     }

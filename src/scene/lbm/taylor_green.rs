@@ -113,8 +113,7 @@ impl<T: Compiled> Flow<T> for Vortices {
         for (name, error) in
             [("velocity_l1", l1[0] / l1[1]), ("velocity_l2", (l2[0] / l2[1]).sqrt())]
         {
-            report.results.insert(name, error);
-            report.errors.insert(name, error);
+            report.error(name, error);
         }
     }
 

@@ -238,7 +238,7 @@ impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
                 measure::force_on_body(&mut simulation.whole(), fields, mass, |_| true);
             let fluid = DENSITY * self.volume * (1.0 - self.scene.solid_fraction);
             let driving = fluid * self.scene.body_acceleration;
-            report.result("traction", force / driving, is_steady.then_some(1.0));
+            cylinder::judge_momentum(report, force, driving, is_steady);
         }
         if let Some(error) = self.profile_error(simulation.columns(), fields).filter(|_| is_steady)
         {
