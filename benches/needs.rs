@@ -112,7 +112,7 @@ fn instructions(case: usize, steps: u64) -> Result<Option<f64>, Error> {
     let said = String::from_utf8_lossy(&output.stderr);
     let count = said
         .lines()
-        .find_map(|line| line.split_once("I refs:"))
+        .find_map(|line| line.split_once("refs:"))
         .ok_or_else(|| format!("valgrind counted nothing: {said}"))?;
     Ok(Some(count.1.trim().replace(',', "").parse()?))
 }
