@@ -6,7 +6,7 @@
 //! Pressure in the cylinder is taken from the fluid, and the velocity there is a linear profile,
 //! fitted to the fluid, through zero on the exact surface, not on the steps of the lattice. The
 //! profile of Morris et al. (1997), `wall_velocity=linear`, needs a largest extrapolation, on which
-//! the drag depends, and with it the drag does not converge.
+//! the drag depends; with it, and density by continuity, the drag did not converge.
 
 use finegrain_framework::run::{Every, History, Run, Stopped, Summary};
 use finegrain_framework::space::Cells;
