@@ -1,6 +1,7 @@
 //! Lid-driven cavity: a unit square of fluid under a lid at y = 1 that moves along x at speed 1.
 
 use super::parameter::{Parameter, Parameters};
+use super::report::Report;
 
 /// Parameters that every method shares.
 pub const PARAMETERS: [Parameter; 2] = [
@@ -40,6 +41,19 @@ impl Cavity {
     /// Kinematic viscosity.
     pub fn viscosity(&self) -> f64 {
         1.0 / self.reynolds
+    }
+
+    /// Of pictures.
+    pub fn title(&self) -> String {
+        format!("Lid-driven cavity, Re = {}", self.reynolds)
+    }
+
+    /// Judges the extrema, against those of steady flow.
+    pub fn judge(&self, report: &mut Report, found: &Extrema, is_steady: bool) {
+        let reference = self.reference().filter(|_| is_steady);
+        report.result("u_min", found.u_min, reference.map(|r| r.u_min));
+        report.result("v_max", found.v_max, reference.map(|r| r.v_max));
+        report.result("v_min", found.v_min, reference.map(|r| r.v_min));
     }
 
     /// The extrema from an independent solution, where there is one.

@@ -8,6 +8,7 @@
 use std::f64::consts::PI;
 
 use super::parameter::{Parameter, Parameters};
+use super::report::Report;
 
 /// Distance of the plates, m.
 pub const GAP: f64 = 1e-3;
@@ -33,6 +34,16 @@ pub enum Drive {
     Poiseuille,
 }
 
+impl Drive {
+    /// Name of the scene.
+    pub fn scene(self) -> &'static str {
+        match self {
+            Self::Couette => "couette",
+            Self::Poiseuille => "poiseuille",
+        }
+    }
+}
+
 /// The scene with its parameters set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
@@ -56,6 +67,37 @@ impl Channel {
     /// Body acceleration along x, m/s^2.
     pub fn body_acceleration(&self) -> f64 {
         if self.drive == Drive::Poiseuille { 8.0 * VISCOSITY * SPEED / (GAP * GAP) } else { 0.0 }
+    }
+
+    /// Of pictures.
+    pub fn title(&self) -> String {
+        let name = match self.drive {
+            Drive::Couette => "Couette",
+            Drive::Poiseuille => "Poiseuille",
+        };
+        format!("{name} flow that starts from rest, t = {TIME} s")
+    }
+
+    /// Judges pairs of height, m, and velocity, m/s, at the time `t` > 0, s. `velocity_l2`: the L2 norm
+    /// of the difference of the profile from the series, relative to that of the series;
+    /// `cross_flow`: largest velocity across over the largest along.
+    pub fn judge(
+        &self,
+        report: &mut Report,
+        t: f64,
+        profile: impl Iterator<Item = (f64, [f64; 2])>,
+    ) {
+        let (mut difference, mut norm, mut across, mut along) = (0.0, 0.0, 0.0f64, 0.0f64);
+        for (y, [u, v]) in profile {
+            let exact = self.velocity(y, t);
+            difference += (u - exact).powi(2);
+            norm += exact * exact;
+            across = across.max(v.abs());
+            along = along.max(u.abs());
+        }
+        report.error("velocity_l2", (difference / norm).sqrt());
+        report.result("cross_flow", across / along, None);
+        report.result("largest_velocity", along, None);
     }
 
     /// Velocity along x, m/s, at the height `y` above the lower plate and the time `t` > 0 (Morris

@@ -6,6 +6,7 @@
 
 use std::f64::consts::PI;
 
+use finegrain_framework::run::History;
 use finegrain_framework::shape::{Axis, Shape};
 
 use profiles::{RE_0_03, RE_1, Station};
@@ -81,6 +82,35 @@ impl Cylinder {
         self.body_acceleration * SIDE * SIDE / (self.viscosity * drag)
     }
 
+    /// Time in which a disturbance of the mean flow decays by a factor e, s: `L^2 / (nu k)`.
+    pub fn relaxation_time(&self) -> f64 {
+        self.creeping_velocity() / self.body_acceleration
+    }
+
+    /// Of pictures.
+    pub fn title(&self) -> String {
+        format!("Flow through a square array of cylinders, phi = {:.3}", self.solid_fraction)
+    }
+
+    /// Judges the superficial mean velocity, m/s, in a cell with these sides across the cylinder, m.
+    /// The reference of `drag_k` is of steady flow through a square array.
+    pub fn judge(
+        &self,
+        report: &mut Report,
+        [x, y, z]: [f64; 3],
+        [length, width]: [f64; 2],
+        is_steady: bool,
+    ) {
+        if !is_steady {
+            report.notes.push("not steady: the drag is not that of steady flow".to_owned());
+        }
+        let is_square = (length / width - 1.0).abs() < 1e-9;
+        let reference = self.reference_drag().filter(|_| is_steady && is_square);
+        report.result("drag_k", self.drag(x, length * width), reference);
+        report.result("superficial_velocity", x, None);
+        report.result("cross_flow", y.hypot(z) / x, None);
+    }
+
     /// `k = f L^2 / (nu U)`, with `L^2` the area of the cell and `U` the superficial mean velocity:
     /// averaged over the whole cell, zero in the cylinder.
     pub fn drag(&self, superficial_velocity: f64, area: f64) -> f64 {
@@ -111,6 +141,20 @@ impl Cylinder {
         // the defaults come to rounds to a little more than 5).
         let creeping = CREEPING.iter().find(|(phi, _)| is(self.solid_fraction, *phi))?;
         (forcing < 5.001).then_some(creeping.1)
+    }
+}
+
+/// Whether the mean velocity, three samples a relaxation time, has twice changed by less than
+/// `tolerance` of itself: it is then within some three times that of its final value.
+pub fn is_steady(histories: &[History], tolerance: f64) -> bool {
+    let mean: Vec<f64> =
+        histories[0].column("velocity_x").map(Iterator::collect).unwrap_or_default();
+    match mean[..] {
+        [.., first, second, third] if mean.len() > 4 => {
+            let change = (second - first).abs().max((third - second).abs());
+            change < tolerance * third.abs()
+        }
+        _ => false,
     }
 }
 

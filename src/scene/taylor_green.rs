@@ -7,6 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::parameter::{Parameter, Parameters};
+use super::report::Report;
 
 /// Parameters that every method shares.
 pub const PARAMETERS: [Parameter; 3] = [
@@ -57,6 +58,40 @@ impl TaylorGreen {
     pub fn pressure(&self, [x, y, z]: [f64; 3]) -> f64 {
         let sum = (2.0 * TAU * x).cos() + (2.0 * TAU * y).cos();
         if self.dims == 2 { -0.25 * sum } else { sum * ((2.0 * TAU * z).cos() + 2.0) / 16.0 }
+    }
+
+    /// Of pictures.
+    pub fn title(&self) -> String {
+        format!("Taylor-Green vortices, Re = {}", self.reynolds)
+    }
+
+    /// Judges the velocities at points, at the time `t` > 0, and the kinetic energies at the
+    /// beginning and then. `decay_rate` of the velocity, from the energies; in 2-D `velocity_l1` and
+    /// `velocity_l2`, relative to the norms of the exact velocity.
+    pub fn judge(
+        &self,
+        report: &mut Report,
+        t: f64,
+        [first, last]: [f64; 2],
+        velocities: impl Iterator<Item = ([f64; 3], [f64; 2])>,
+    ) {
+        let is_plane = self.dims == 2;
+        let rate = (first / last).ln() / (2.0 * t);
+        report.result("decay_rate", rate, is_plane.then(|| self.decay_rate()));
+        if !is_plane {
+            return;
+        }
+        let (mut l1, mut l2) = ([0.0; 2], [0.0; 2]);
+        for (x, [u, v]) in velocities {
+            let exact = self.velocity(x, t);
+            let (dx, dy) = (u - exact[0], v - exact[1]);
+            l1[0] += dx.hypot(dy);
+            l1[1] += exact[0].hypot(exact[1]);
+            l2[0] += dx * dx + dy * dy;
+            l2[1] += exact[0] * exact[0] + exact[1] * exact[1];
+        }
+        report.error("velocity_l1", l1[0] / l1[1]);
+        report.error("velocity_l2", (l2[0] / l2[1]).sqrt());
     }
 
     /// Rate at which the exact velocity decays in 2-D.

@@ -9,7 +9,7 @@ use finegrain_lbm::model::Parts;
 use finegrain_lbm::{Body, Compiled, Fluid, LatticeKind, Mesh, Physics, Start, measure};
 
 use super::{Final, Flow, LbmScene};
-use crate::scene::cavity::{self, Cavity};
+use crate::scene::cavity::{self, Cavity, Extrema};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::{Precision, Report, SceneError};
 
@@ -106,16 +106,13 @@ impl<T: Compiled> Flow<T> for CavityFlow {
         if !is_steady {
             report.notes.push("not steady: no errors are given".to_owned());
         }
-        let reference = self.scene.reference().filter(|_| is_steady);
-        let negative: Vec<f64> = v.iter().map(|v| -v).collect();
-        let u_min = -largest(&u.iter().map(|u| -u).collect::<Vec<_>>());
-        report.result("u_min", u_min, reference.map(|r| r.u_min));
-        report.result("v_max", largest(&v), reference.map(|r| r.v_max));
-        report.result("v_min", -largest(&negative), reference.map(|r| r.v_min));
+        let least = |values: &[f64]| -largest(&values.iter().map(|v| -v).collect::<Vec<_>>());
+        let found = Extrema { u_min: least(&u), v_max: largest(&v), v_min: least(&v) };
+        self.scene.judge(report, &found, is_steady);
     }
 
     fn title(&self) -> String {
-        format!("Lid-driven cavity, Re = {}", self.scene.reynolds)
+        self.scene.title()
     }
 }
 

@@ -76,10 +76,6 @@ fn build<T: Compiled>(
         bodies: vec![plate(0.0, 1.0, 0.0), plate(GAP, -1.0, scene.plate_velocity())],
         ..Physics::default()
     };
-    let name = match drive {
-        Drive::Couette => "couette",
-        Drive::Poiseuille => "poiseuille",
-    };
     super::scene(
         ChannelFlow { scene },
         &mesh,
@@ -87,7 +83,7 @@ fn build<T: Compiled>(
         &physics,
         &super::scheme(parameters, LatticeKind::D2Q9, true),
         &Start::default(),
-        super::description(name, parameters, precision),
+        super::description(drive.scene(), parameters, precision),
     )
 }
 
@@ -110,8 +106,6 @@ impl<T: Compiled> Flow<T> for ChannelFlow {
         })
     }
 
-    /// `velocity_l2`: the L2 norm of the difference of the profile from the series, relative to that
-    /// of the series; `cross_flow`: largest velocity across over the largest along.
     fn judge(
         &self,
         report: &mut Report,
@@ -122,26 +116,14 @@ impl<T: Compiled> Flow<T> for ChannelFlow {
         if summary.time <= 0.0 {
             return;
         }
-        let (mut difference, mut norm, mut across, mut along) = (0.0, 0.0, 0.0f64, 0.0f64);
-        for site in lbm.sites() {
+        let profile = lbm.sites().map(|site| {
             let [u, v, _] = lbm.velocity(simulation, site);
-            let exact = self.scene.velocity(lbm.position(site)[1], summary.time);
-            difference += (u - exact).powi(2);
-            norm += exact * exact;
-            across = across.max(v.abs());
-            along = along.max(u.abs());
-        }
-        let error = (difference / norm).sqrt();
-        report.error("velocity_l2", error);
-        report.result("cross_flow", across / along, None);
-        report.result("largest_velocity", along, None);
+            (lbm.position(site)[1], [u, v])
+        });
+        self.scene.judge(report, summary.time, profile);
     }
 
     fn title(&self) -> String {
-        let name = match self.scene.drive {
-            Drive::Couette => "Couette",
-            Drive::Poiseuille => "Poiseuille",
-        };
-        format!("{name} flow that starts from rest, t = {TIME} s")
+        self.scene.title()
     }
 }

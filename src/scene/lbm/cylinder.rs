@@ -72,22 +72,13 @@ struct CylinderFlow {
     volume: f64,
 }
 
-impl CylinderFlow {
-    /// Time in which a disturbance of the mean flow decays by a factor e, s: `L^2 / (nu k)`.
-    fn relaxation_time(&self) -> f64 {
-        self.scene.creeping_velocity() / self.scene.body_acceleration
-    }
-}
-
 impl<T: Compiled> Flow<T> for CylinderFlow {
     fn end_time(&self) -> f64 {
-        60.0 * self.relaxation_time()
+        60.0 * self.scene.relaxation_time()
     }
 
-    /// Steady when the mean velocity has twice changed by less than the tolerance in a third of the
-    /// relaxation time: it is then within some three times that of its final value.
     fn observe(&self, run: Run<Grid>, parts: &Parts<T>) -> Run<Grid> {
-        let every = Every::Time(self.relaxation_time() / 3.0);
+        let every = Every::Time(self.scene.relaxation_time() / 3.0);
         let columns = [
             "velocity_x",
             "velocity_y",
@@ -105,17 +96,7 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
             let speed = measure::largest_speed(whole, &parts);
             [x, y, z, totals.kinetic_energy, speed, force, totals.excess_mass]
         })
-        .stop_when(every, move |_, histories| {
-            let mean: Vec<f64> =
-                histories[0].column("velocity_x").map(Iterator::collect).unwrap_or_default();
-            match mean[..] {
-                [.., first, second, third] if mean.len() > 4 => {
-                    let change = (second - first).abs().max((third - second).abs());
-                    change < tolerance * third.abs()
-                }
-                _ => false,
-            }
-        })
+        .stop_when(every, move |_, histories| cylinder::is_steady(histories, tolerance))
     }
 
     /// `drag_k` from the mean velocity, and `momentum_balance`: the force on the cylinder over the
@@ -133,13 +114,7 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
             return;
         }
         let is_steady = summary.stopped == Stopped::Criterion;
-        if !is_steady {
-            report.notes.push("not steady: the drag is not that of steady flow".to_owned());
-        }
-        let reference = self.scene.reference_drag().filter(|_| is_steady);
-        report.result("drag_k", self.scene.drag(x, SIDE * SIDE), reference);
-        report.result("superficial_velocity", x, None);
-        report.result("cross_flow", y.hypot(z) / x, None);
+        self.scene.judge(report, [x, y, z], [SIDE; 2], is_steady);
         let [force, ..] = measure::force_on_body(&mut simulation.whole(), &lbm.parts, 0);
         let driving = self.scene.body_acceleration * totals.mass;
         cylinder::judge_momentum(report, force, driving, is_steady);
@@ -147,6 +122,6 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
     }
 
     fn title(&self) -> String {
-        format!("Flow through a square array of cylinders, phi = {:.3}", self.scene.solid_fraction)
+        self.scene.title()
     }
 }

@@ -78,8 +78,6 @@ impl<T: Compiled> Flow<T> for Vortices {
         })
     }
 
-    /// `decay_rate` of the velocity, from the kinetic energy at the beginning and the end;
-    /// `velocity_l1` and `velocity_l2`, relative to the norms of the exact velocity.
     fn judge(
         &self,
         report: &mut Report,
@@ -93,31 +91,14 @@ impl<T: Compiled> Flow<T> for Vortices {
             return;
         };
         let last = measure::totals(&mut simulation.whole(), &lbm.parts).kinetic_energy;
-        let is_plane = self.scene.dims == 2;
-        let rate = (first / last).ln() / (2.0 * time);
-        report.result("decay_rate", rate, is_plane.then(|| self.scene.decay_rate()));
-        if !is_plane {
-            return;
-        }
-        let (mut l1, mut l2) = ([0.0; 2], [0.0; 2]);
-        for site in lbm.sites() {
-            let exact = self.scene.velocity(lbm.position(site), time);
+        let velocities = lbm.sites().map(|site| {
             let [u, v, _] = lbm.velocity(simulation, site);
-            let (dx, dy) = (u - exact[0], v - exact[1]);
-            l1[0] += dx.hypot(dy);
-            l1[1] += exact[0].hypot(exact[1]);
-            l2[0] += dx * dx + dy * dy;
-            l2[1] += exact[0] * exact[0] + exact[1] * exact[1];
-        }
-        // These are errors already: relative to the exact solution.
-        for (name, error) in
-            [("velocity_l1", l1[0] / l1[1]), ("velocity_l2", (l2[0] / l2[1]).sqrt())]
-        {
-            report.error(name, error);
-        }
+            (lbm.position(site), [u, v])
+        });
+        self.scene.judge(report, time, [first, last], velocities);
     }
 
     fn title(&self) -> String {
-        format!("Taylor-Green vortices, Re = {}", self.scene.reynolds)
+        self.scene.title()
     }
 }

@@ -13,7 +13,7 @@ use finegrain_framework::{Real, Simulation};
 use finegrain_sph::{Body, Fields, Fluid, Packing, Physics, Sph, Start, measure};
 
 use super::{Flow, SphScene, profile};
-use crate::scene::cavity::{self, Cavity};
+use crate::scene::cavity::{self, Cavity, Extrema};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::{Precision, Report, SceneError};
 
@@ -123,16 +123,14 @@ impl<T: Real, P: Real> Flow<T, P> for CavityFlow {
         let u = profile::velocities(columns, fields, &upright, spacing, None);
         let v = profile::velocities(columns, fields, &across, spacing, None);
         let is_steady = summary.time >= Flow::<T, P>::end_time(self);
-        let reference = self.scene.reference().filter(|_| is_steady);
         let least = |v: &[[f64; 2]], a: usize| v.iter().map(|v| v[a]).fold(f64::INFINITY, f64::min);
         let most = v.iter().map(|v| v[1]).fold(f64::NEG_INFINITY, f64::max);
-        report.result("u_min", least(&u, 0), reference.map(|r| r.u_min));
-        report.result("v_max", most, reference.map(|r| r.v_max));
-        report.result("v_min", least(&v, 1), reference.map(|r| r.v_min));
+        let found = Extrema { u_min: least(&u, 0), v_max: most, v_min: least(&v, 1) };
+        self.scene.judge(report, &found, is_steady);
     }
 
     fn title(&self) -> String {
-        format!("Lid-driven cavity, Re = {}", self.scene.reynolds)
+        self.scene.title()
     }
 
     fn spacing(&self) -> f64 {

@@ -8,7 +8,7 @@ use finegrain_framework::run::{Every, Run, Summary};
 use finegrain_framework::shape::Shape;
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
-use finegrain_framework::{Real, Simulation};
+use finegrain_framework::{Real, Simulation, State};
 use finegrain_sph::{Body, Fields, Fluid, Packing, Physics, Sph, Start, measure};
 
 use super::{Flow, SphScene};
@@ -108,11 +108,7 @@ fn build<T: Real, P: Real>(
         ..Physics::default()
     };
     let sph = Sph::new(&start, &fluid, &physics, &super::scheme_with_walls(parameters))?;
-    let name = match drive {
-        Drive::Couette => "couette",
-        Drive::Poiseuille => "poiseuille",
-    };
-    let description = super::description(name, parameters, precision);
+    let description = super::description(drive.scene(), parameters, precision);
     Ok(SphScene { sph, flow: ChannelFlow { scene }, description })
 }
 
@@ -135,8 +131,6 @@ impl<T: Real, P: Real> Flow<T, P> for ChannelFlow {
         })
     }
 
-    /// `velocity_l2`: the L2 norm of the difference of the profile from the series, relative to that
-    /// of the series; `cross_flow`: largest velocity across over the largest along.
     fn judge(
         &self,
         report: &mut Report,
@@ -150,31 +144,17 @@ impl<T: Real, P: Real> Flow<T, P> for ChannelFlow {
         }
         let columns = simulation.columns();
         let Some(depth) = fields.wall_depth else { return };
-        let (mut difference, mut norm, mut across, mut along) = (0.0, 0.0, 0.0f64, 0.0f64);
-        for i in 0..columns.points() {
-            if columns.values(depth)[i] > T::zero() {
-                continue;
-            }
+        let value = |column: State<T>, i: usize| columns.values(column)[i].as_f64();
+        let in_fluid = (0..columns.points()).filter(|&i| columns.values(depth)[i] <= T::zero());
+        let profile = in_fluid.map(|i| {
             let y = columns.values(fields.position[1])[i].as_f64();
-            let [u, v] = [0, 1].map(|a| columns.values(fields.velocity[a])[i].as_f64());
-            let exact = self.scene.velocity(y, summary.time);
-            difference += (u - exact).powi(2);
-            norm += exact * exact;
-            across = across.max(v.abs());
-            along = along.max(u.abs());
-        }
-        let error = (difference / norm).sqrt();
-        report.error("velocity_l2", error);
-        report.result("cross_flow", across / along, None);
-        report.result("largest_velocity", along, None);
+            (y, [0, 1].map(|a| value(fields.velocity[a], i)))
+        });
+        self.scene.judge(report, summary.time, profile);
     }
 
     fn title(&self) -> String {
-        let name = match self.scene.drive {
-            Drive::Couette => "Couette",
-            Drive::Poiseuille => "Poiseuille",
-        };
-        format!("{name} flow that starts from rest, t = {TIME} s")
+        self.scene.title()
     }
 
     fn spacing(&self) -> f64 {

@@ -137,11 +137,6 @@ struct CylinderFlow {
 }
 
 impl CylinderFlow {
-    /// Time in which a disturbance of the mean flow decays by a factor e, s: `L^2 / (nu k)`.
-    fn relaxation_time(&self) -> f64 {
-        self.scene.creeping_velocity() / self.scene.body_acceleration
-    }
-
     /// L2 of the difference to the reference's velocities over the L2 of these, where there are
     /// some.
     fn profile_error<T: Real, P: Real>(
@@ -171,13 +166,11 @@ impl CylinderFlow {
 
 impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
     fn end_time(&self) -> f64 {
-        30.0 * self.relaxation_time()
+        30.0 * self.scene.relaxation_time()
     }
 
-    /// Steady when the mean velocity has twice changed by less than a part in 10^4 in a third of the
-    /// relaxation time: it is then within about 3 parts in 10^4 of its final value.
     fn observe(&self, run: Run<Cells<P>>, fields: &Fields<T, P>, mass: f64) -> Run<Cells<P>> {
-        let every = Every::Time(self.relaxation_time() / 3.0);
+        let every = Every::Time(self.scene.relaxation_time() / 3.0);
         let columns = ["velocity_x", "velocity_y", "velocity_z", "kinetic_energy", "largest_speed"];
         let (fields, volume) = (fields.clone(), self.volume);
         run.monitor("flow", every, columns, move |whole| {
@@ -185,17 +178,7 @@ impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
             let [x, y, z] = totals.flow.map(|flow| flow / volume);
             [x, y, z, totals.kinetic_energy, measure::largest_speed(whole, &fields)]
         })
-        .stop_when(every, |_, histories| {
-            let mean: Vec<f64> =
-                histories[0].column("velocity_x").map(Iterator::collect).unwrap_or_default();
-            match mean[..] {
-                [.., first, second, third] if mean.len() > 4 => {
-                    let change = (second - first).abs().max((third - second).abs());
-                    change < 1e-4 * third.abs()
-                }
-                _ => false,
-            }
-        })
+        .stop_when(every, |_, histories| cylinder::is_steady(histories, 1e-4))
     }
 
     fn judge(
@@ -211,9 +194,6 @@ impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
         if x == 0.0 {
             return;
         }
-        // The reference is of steady flow through a square array.
-        let [length, width] = self.sides;
-        let is_square = (length / width - 1.0).abs() < 1e-9;
         let mut is_steady = summary.stopped == Stopped::Criterion;
         if !is_steady && let Some((mean, change)) = late_mean(&summary.histories[0]) {
             let percent = 100.0 * change;
@@ -226,12 +206,7 @@ impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
                 ));
             }
         }
-        if !is_steady {
-            report.notes.push("not steady: the drag is not that of steady flow".to_owned());
-        }
-        let reference = self.scene.reference_drag().filter(|_| is_steady && is_square);
-        report.result("drag_k", self.scene.drag(x, length * width), reference);
-        report.result("superficial_velocity", x, None);
+        self.scene.judge(report, [x, y, z], self.sides, is_steady);
         if !fields.reaction.is_empty() {
             // There is only one body.
             let [force, ..] =
@@ -244,11 +219,10 @@ impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
         {
             report.error("profiles_l2", error);
         }
-        report.result("cross_flow", y.hypot(z) / x, None);
     }
 
     fn title(&self) -> String {
-        format!("Flow through a square array of cylinders, phi = {:.3}", self.scene.solid_fraction)
+        self.scene.title()
     }
 
     fn spacing(&self) -> f64 {

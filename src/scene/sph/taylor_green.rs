@@ -99,8 +99,6 @@ impl<T: Real, P: Real> Flow<T, P> for Vortices {
         })
     }
 
-    /// `decay_rate` of the velocity, from the kinetic energy at the beginning and the end;
-    /// `velocity_l1` and `velocity_l2`, relative to the norms of the exact velocity.
     fn judge(
         &self,
         report: &mut Report,
@@ -115,36 +113,20 @@ impl<T: Real, P: Real> Flow<T, P> for Vortices {
             return;
         };
         let last = measure::totals(&mut simulation.whole(), fields, mass).kinetic_energy;
-        let is_plane = self.scene.dims == 2;
-        let rate = (first / last).ln() / (2.0 * time);
-        report.result("decay_rate", rate, is_plane.then(|| self.scene.decay_rate()));
-        if !is_plane {
-            return;
-        }
-        let scene = self.scene;
         let columns = simulation.columns();
-        let (mut l1, mut l2) = ([0.0; 2], [0.0; 2]);
-        for i in 0..columns.points() {
-            let value = |handle: State<T>| columns.values(handle)[i].as_f64();
-            let [x, y] = [0, 1].map(|a| columns.values(fields.position[a])[i].as_f64());
-            let x = [x, y, 0.0];
-            let exact = scene.velocity(x, time);
-            let (dx, dy) =
-                (value(fields.velocity[0]) - exact[0], value(fields.velocity[1]) - exact[1]);
-            l1[0] += dx.hypot(dy);
-            l1[1] += exact[0].hypot(exact[1]);
-            l2[0] += dx * dx + dy * dy;
-            l2[1] += exact[0] * exact[0] + exact[1] * exact[1];
-        }
-        for (name, error) in
-            [("velocity_l1", l1[0] / l1[1]), ("velocity_l2", (l2[0] / l2[1]).sqrt())]
-        {
-            report.error(name, error);
-        }
+        let value = |column: State<T>, i: usize| columns.values(column)[i].as_f64();
+        let velocities = (0..columns.points()).map(|i| {
+            let mut x = [0.0; 3];
+            for (x, &position) in x.iter_mut().zip(&fields.position) {
+                *x = columns.values(position)[i].as_f64();
+            }
+            (x, [0, 1].map(|a| value(fields.velocity[a], i)))
+        });
+        self.scene.judge(report, time, [first, last], velocities);
     }
 
     fn title(&self) -> String {
-        format!("Taylor-Green vortices, Re = {}", self.scene.reynolds)
+        self.scene.title()
     }
 
     fn spacing(&self) -> f64 {
