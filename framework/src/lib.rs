@@ -94,6 +94,7 @@ mod stage;
 mod step;
 mod sync;
 mod team;
+mod vector_field;
 mod view;
 mod viewable;
 mod whole;
@@ -108,6 +109,7 @@ pub use simulation::{Model, Position, RestoreError, RunError, Settings, Simulati
 pub use stage::*;
 pub use step::{Stage, Step, StepBuilder};
 pub use team::Team;
+pub use vector_field::VectorField;
 pub use view::*;
 pub use viewable::{Geometry, Viewable};
 pub use whole::{FixedPace, Pace, Pacing, RigidPace, Whole, WholeStage};

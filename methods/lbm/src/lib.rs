@@ -15,7 +15,7 @@
 //! | `sites.rs`, `link.rs` | what bodies do to rows of sites, and to populations |
 //! | [`start`] | consistent populations at the beginning |
 //! | `derived.rs`, [`measure`] | pressure and velocity; sums over the flow, forces on bodies |
-//! | [`physics`], [`body`], [`acceleration`] | what a scene models, and how |
+//! | [`physics`], [`body`] | what a scene models, and how |
 //! | [`model`] | builds a framework model of it |
 //!
 //! # Example
@@ -49,7 +49,6 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
-pub mod acceleration;
 pub mod body;
 pub mod collision;
 pub mod error;
@@ -61,6 +60,7 @@ pub mod model;
 pub mod physics;
 pub mod start;
 
+mod acceleration;
 mod around;
 mod derived;
 mod flow;
@@ -68,7 +68,6 @@ mod link;
 mod sites;
 mod stream;
 
-pub use acceleration::AccelerationField;
 pub use body::{Body, Wall};
 pub use collision::Collision;
 pub use error::LbmError;

@@ -1,8 +1,8 @@
 //! What a scene models, and how.
 
+use finegrain_framework::VectorField;
 use serde::{Deserialize, Serialize};
 
-use crate::acceleration::AccelerationField;
 use crate::body::{Body, Wall};
 use crate::collision::Collision;
 use crate::error::{LbmError, finite, not_negative, positive};
@@ -51,7 +51,7 @@ pub struct Physics {
     /// Constant acceleration of the fluid, m/s^2; zero if none.
     pub body_acceleration: [f64; 3],
     /// Acceleration of the fluid that varies, besides.
-    pub acceleration_field: Option<AccelerationField>,
+    pub acceleration_field: Option<VectorField>,
     /// Bodies that do not move. Where several overlap, the fluid meets the one that comes first on
     /// its way, or in this list.
     pub bodies: Vec<Body>,

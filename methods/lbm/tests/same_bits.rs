@@ -3,10 +3,9 @@
 use std::f64::consts::TAU;
 
 use finegrain_framework::shape::{Axis, Shape};
-use finegrain_framework::{HandOut, Schedule, Settings, Simulation};
+use finegrain_framework::{HandOut, Schedule, Settings, Simulation, VectorField};
 use finegrain_lbm::{
-    AccelerationField, Body, Collision, Compiled, Fluid, LatticeKind, Lbm, Mesh, Physics, Scheme,
-    Start,
+    Body, Collision, Compiled, Fluid, LatticeKind, Lbm, Mesh, Physics, Scheme, Start,
 };
 
 /// Everything at once: walls that slide, a curved body across a periodic end, a force that varies.
@@ -24,7 +23,7 @@ fn model<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
     let post = Shape::Cylinder { axis: Axis::Z, centre: [4.4, 1.0, 0.0], radius: 0.33 };
     let physics = Physics {
         body_acceleration: [0.1, 0.0, 0.0],
-        acceleration_field: Some(AccelerationField::new(|[x, y, _], t| {
+        acceleration_field: Some(VectorField::new(|[x, y, _], t| {
             [0.1 * (x + t).sin(), 0.1 * (y - t).cos(), 0.0]
         })),
         bodies: vec![

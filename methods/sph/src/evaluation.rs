@@ -2,8 +2,9 @@
 //! write.
 //!
 //! A piece is a term (a sum over neighbours), an update (of a particle's own quantities) or a stage
-//! that sums over neighbours in its own way. Terms that can are summed in one sweep over all pairs. A piece comes after those that write what it
-//! reads, and all terms that add to one quantity are in one sweep.
+//! that sums over neighbours in its own way. Terms that can are summed in one sweep over all pairs. A
+//! piece comes after those that write what it reads, and all terms that add to one quantity are in
+//! one sweep.
 
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Real, Stage};

@@ -176,5 +176,6 @@ pub(crate) fn check(fluid: &Fluid, physics: &Physics, scheme: &Scheme) -> Result
     let is_plain = scheme.gradient == Gradient::Kernel;
     requires(is_plain, "an ideal gas", "gradient = kernel")?;
     requires(physics.viscosity.is_none(), "an ideal gas", "no laminar viscosity")?;
+    requires(physics.fringe.is_none(), "an ideal gas", "space without a fringe")?;
     requires(physics.bodies.is_empty(), "an ideal gas", "space without bodies")
 }

@@ -56,11 +56,11 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
-pub mod acceleration;
 pub mod body;
 pub mod dimension;
 pub mod error;
 pub mod fields;
+pub mod fringe;
 pub mod gas;
 pub mod kernel;
 pub mod measure;
@@ -79,6 +79,7 @@ mod candidates;
 mod correction;
 mod evaluation;
 mod gas_pacing;
+mod imposed;
 mod initial_state;
 mod liquid;
 mod neighbourhood;
@@ -92,11 +93,11 @@ mod term;
 mod wall;
 mod wall_state;
 
-pub use acceleration::AccelerationField;
 pub use body::{Body, Slip, WallPressure, WallVelocity};
 pub use dimension::Dimension;
 pub use error::SphError;
 pub use fields::Fields;
+pub use fringe::Fringe;
 pub use gas::ShockCapturing;
 pub use kernel::{Kernel, SmoothingFunction};
 pub use model::Sph;

@@ -14,6 +14,7 @@ use crate::evaluation::{Piece, slots};
 use crate::fields::Fields;
 use crate::gas;
 use crate::gas_pacing::GasPacing;
+use crate::imposed::Imposed;
 use crate::initial_state::InitialState;
 use crate::kernel::Kernel;
 use crate::kernel::adaptive::{AdaptiveKernel, Kernels};
@@ -216,7 +217,7 @@ fn build<T: Real, P: Real, const D: usize>(
         }),
         _ => Friction::AsGiven,
     };
-    let body_acceleration = std::array::from_fn(|a| T::of(physics.body_acceleration[a]));
+    let imposed = Imposed::new(physics);
     let mut evaluation = Vec::new();
     for slot in slots(pieces, D) {
         let mut terms = Vec::new();
@@ -232,8 +233,7 @@ fn build<T: Real, P: Real, const D: usize>(
                 kernels,
                 terms,
                 &fields,
-                body_acceleration,
-                physics.acceleration_field.as_ref(),
+                &imposed,
                 scheme.wall_pressure == WallPressure::Evolved,
                 &friction,
             )));
@@ -275,6 +275,7 @@ fn build<T: Real, P: Real, const D: usize>(
             sound_speed: fluid.sound_speed,
             diffusivity: diffusivity(fluid, physics, scheme, smoothing_length, D),
             body_acceleration: magnitude,
+            damping_rate: physics.fringe.as_ref().map_or(0.0, |fringe| fringe.rate),
             courant_number: scheme.courant_number,
             transport: scheme.transport,
             most_steps: 20,

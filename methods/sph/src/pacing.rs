@@ -31,6 +31,8 @@ pub(crate) struct TimeStepControl<T, P> {
     pub diffusivity: f64,
     /// Magnitude of the body acceleration, m/s^2.
     pub body_acceleration: f64,
+    /// Largest rate at which velocities are damped, 1/s; 0 without.
+    pub damping_rate: f64,
     /// Fraction of each limit that is used.
     pub courant_number: f64,
     /// Strength of the transport velocity, as in the scheme.
@@ -41,7 +43,8 @@ pub(crate) struct TimeStepControl<T, P> {
 
 impl<T: Real, P: Real> Pacing<Cells<P>> for TimeStepControl<T, P> {
     /// `dt = C min(0.25 h / (c + v_max), 0.125 h^2 / nu, 0.25 sqrt(h / a_max))` (Morris, Fox & Zhu
-    /// 1997, eqs. 29 to 31, with the speed added to that of sound).
+    /// 1997, eqs. 29 to 31, with the speed added to that of sound), and half of the time in which
+    /// velocities are damped.
     fn pace(&mut self, whole: &mut Whole<'_, Cells<P>>) -> Result<Pace, Fault> {
         let fields = &self.fields;
         let [v2_max, a2_max, drift2_max] = whole.max(|near| {
@@ -66,6 +69,7 @@ impl<T: Real, P: Real> Pacing<Cells<P>> for TimeStepControl<T, P> {
         let sound_limit = 0.25 * h / (self.sound_speed + speed);
         let viscous_limit = 0.125 * h * h / self.diffusivity;
         let force_limit = 0.25 * (h / acceleration).sqrt();
+        let damping_limit = 0.5 / self.damping_rate;
         if !(speed.is_finite() && acceleration.is_finite()) {
             return Err(Fault::new(format!(
                 "largest speed {speed} m/s and acceleration {acceleration} m/s^2 must be finite"
@@ -83,7 +87,8 @@ impl<T: Real, P: Real> Pacing<Cells<P>> for TimeStepControl<T, P> {
         // transport velocity is 0.14 (1-D integral of the kernel over 0.25 h) c.
         let first = if whole.step == 0 { 0.14 * self.transport * self.sound_speed } else { 0.0 };
         let speed = speed + drift2_max.sqrt().max(first);
-        let stable = self.courant_number * sound_limit.min(viscous_limit).min(force_limit);
+        let stable = self.courant_number
+            * sound_limit.min(viscous_limit).min(force_limit).min(damping_limit);
         // Accelerations are not known before the first step: look again after it.
         let most_steps = if whole.step == 0 { 1 } else { self.most_steps };
         Ok(within_skin(stable, most_steps, whole.domain.slack(), speed, acceleration))

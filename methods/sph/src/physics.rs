@@ -1,10 +1,11 @@
 //! What a scene models.
 
+use finegrain_framework::VectorField;
 use serde::{Deserialize, Serialize};
 
-use crate::acceleration::AccelerationField;
 use crate::body::{Body, Slip};
 use crate::error::{SphError, finite, not_negative, positive};
+use crate::fringe::Fringe;
 use crate::gas::ShockCapturing;
 use crate::state_equation::StateEquation;
 
@@ -42,7 +43,9 @@ pub struct Physics {
     /// Constant acceleration of the fluid, m/s^2; zero if none.
     pub body_acceleration: [f64; 3],
     /// Acceleration of the fluid that varies, besides.
-    pub acceleration_field: Option<AccelerationField>,
+    pub acceleration_field: Option<VectorField>,
+    /// Where the fluid is brought to a velocity, if anywhere.
+    pub fringe: Option<Fringe>,
     /// Bodies, filled with particles that do not move.
     pub bodies: Vec<Body>,
     /// Whether the fluid sticks to them.
@@ -56,6 +59,9 @@ impl Physics {
     pub(crate) fn check(&self) -> Result<(), SphError> {
         for acceleration in self.body_acceleration {
             finite("body_acceleration", acceleration)?;
+        }
+        if let Some(fringe) = &self.fringe {
+            fringe.check()?;
         }
         for (number, body) in self.bodies.iter().enumerate() {
             body.check(number)?;

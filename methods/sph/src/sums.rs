@@ -3,8 +3,8 @@
 
 use finegrain_framework::Real;
 
-use crate::acceleration::AccelerationField;
 use crate::candidates::{Candidates, Layout};
+use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
@@ -24,10 +24,8 @@ pub(crate) struct Sums<T, const D: usize> {
     pub layout: Layout,
     /// What is summed up.
     pub outputs: Vec<Quantity>,
-    /// Acceleration of the fluid by a body force, m/s^2.
-    pub body_acceleration: [T; D],
-    /// The part of it that varies; only if accelerations are summed up.
-    pub acceleration_field: Option<AccelerationField>,
+    /// Only if accelerations are summed up.
+    pub imposed: Option<Imposed<T, D>>,
     pub friction: Friction<T>,
 }
 
@@ -76,11 +74,11 @@ impl<T: Real, const D: usize> Sums<T, D> {
             particle.no_slip = self.no_slip(&particle, candidates);
             neighbours.gather(&self.layout, candidates, &particle, &self.kernels, longest);
             let mut sums = self.sum(&particle, neighbours, work);
-            if let Some(field) = &self.acceleration_field
+            if let Some(imposed) = &self.imposed
+                && imposed.varies()
                 && !particle.is_wall()
             {
-                let given: [T; D] = field.at(candidates.place(&particle), time);
-                sums.add(Quantity::Acceleration, given);
+                imposed.add_varying(&particle, candidates.place(&particle), time, &mut sums);
             }
             for (column, &quantity) in written.iter_mut().zip(&self.outputs) {
                 column[place + k] = sums[quantity];
@@ -107,22 +105,25 @@ impl<T: Real, const D: usize> Sums<T, D> {
     #[inline(always)]
     fn sum(&self, i: &Particle<T, D>, near: &Neighbours<T, D>, work: &mut Work<T>) -> Values<T> {
         let mut sums = Values::zero();
-        let accelerating = if i.is_wall() {
-            &self.on_bodies
+        // Both in one loop, because a loop over terms is a copy of all of them to compile.
+        let rounds: [&[AnyTerm<T>]; 2] = if i.is_wall() {
+            [&self.on_bodies, &self.of_bodies]
         } else {
-            sums.add(Quantity::Acceleration, self.body_acceleration);
-            &self.of_fluid
-        };
-        for term in accelerating {
-            term.add(i, near, work, &mut sums);
-        }
-        if i.is_wall() {
-            for a in 0..D {
-                sums[Quantity::Reaction(a)] = sums[Quantity::Acceleration(a)];
-                sums[Quantity::Acceleration(a)] = T::zero();
+            if let Some(imposed) = &self.imposed {
+                sums.add(Quantity::Acceleration, imposed.uniform);
             }
-            for term in &self.of_bodies {
+            [&self.of_fluid, &[]]
+        };
+        for (round, terms) in rounds.into_iter().enumerate() {
+            for term in terms {
                 term.add(i, near, work, &mut sums);
+            }
+            if i.is_wall() && round == 0 {
+                // The forces on a body are not an acceleration of its particles.
+                for a in 0..D {
+                    sums[Quantity::Reaction(a)] = sums[Quantity::Acceleration(a)];
+                    sums[Quantity::Acceleration(a)] = T::zero();
+                }
             }
         }
         sums

@@ -6,9 +6,9 @@ use finegrain_framework::{
     ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real,
 };
 
-use crate::acceleration::AccelerationField;
 use crate::candidates::Gathered;
 use crate::fields::Fields;
+use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::Quantity;
 use crate::sums::{Scratch, Sums, Written};
@@ -32,8 +32,7 @@ impl<T: Real, P: Real, const D: usize> Sweep<T, P, D> {
         kernels: Kernels<T, D>,
         terms: Vec<AnyTerm<T>>,
         fields: &Fields<T, P>,
-        body_acceleration: [T; D],
-        acceleration_field: Option<&AccelerationField>,
+        imposed: &Imposed<T, D>,
         bodies_evolve: bool,
         friction: &Friction<T>,
     ) -> Self {
@@ -63,7 +62,8 @@ impl<T: Real, P: Real, const D: usize> Sweep<T, P, D> {
         let on_bodies =
             |term: &&AnyTerm<T>| term.pushes_bodies() && !(slips && term.sees_velocity_in_bodies());
         let reacts = accelerates && !fields.reaction.is_empty();
-        let gathered = Gathered::new(fields, reads.collect(), uses_kernel);
+        let imposed_reads = imposed.reads().filter(|_| accelerates);
+        let gathered = Gathered::new(fields, reads.chain(imposed_reads).collect(), uses_kernel);
         let sums = Sums {
             kernels,
             of_fluid: terms.iter().filter(|term| !term.acts_on_bodies()).copied().collect(),
@@ -71,8 +71,7 @@ impl<T: Real, P: Real, const D: usize> Sweep<T, P, D> {
             on_bodies: terms.iter().filter(on_bodies).filter(|_| reacts).copied().collect(),
             layout: gathered.layout.clone(),
             outputs: quantities,
-            body_acceleration,
-            acceleration_field: acceleration_field.filter(|_| accelerates).cloned(),
+            imposed: accelerates.then(|| imposed.clone()),
             friction: if sees_velocity { friction.clone() } else { Friction::AsGiven },
         };
         Self { name: format!("sph {}", names.join(", ")), gathered, outputs, sums }

@@ -5,11 +5,11 @@ use std::f64::consts::{PI, TAU};
 use finegrain_framework::shape::Shape;
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
-use finegrain_framework::{Rate, Settings, Simulation};
+use finegrain_framework::{Rate, Settings, Simulation, VectorField};
 use finegrain_sph::{
-    AccelerationField, ArtificialViscosity, DensityDiffusion, DiffusionForm, Dimension, Fields,
-    Fluid, Kernel, Packing, Physics, Scheme, SmoothingFunction, Sph, Stabilisation, Start,
-    StateEquation, WallPressure,
+    ArtificialViscosity, DensityDiffusion, DiffusionForm, Dimension, Fields, Fluid, Fringe, Kernel,
+    Packing, Physics, Scheme, SmoothingFunction, Sph, Stabilisation, Start, StateEquation,
+    WallPressure,
 };
 
 const DENSITY: f64 = 2.0;
@@ -336,12 +336,12 @@ fn particles_of_walls_repel_what_is_nearer_than_a_spacing() {
 fn an_acceleration_that_varies_is_asked_where_and_when_a_particle_is() {
     let mut case = Case::square(10.0, 0.2, true, Stabilisation::default());
     let field = |x: [f64; 3], t: f64| [x[0] * x[1] + t, (PI * x[0]).sin(), 0.0];
-    case.physics.acceleration_field = Some(AccelerationField::new(field));
+    case.physics.acceleration_field = Some(VectorField::new(field));
     for (a, &x) in accelerations(&case, at_rest, |_| DENSITY).iter().zip(&case.positions) {
         let expected = field(x, 0.0);
         assert!((a[0] - expected[0]).abs() < 1e-12 && (a[1] - expected[1]).abs() < 1e-12);
     }
-    case.physics.acceleration_field = Some(AccelerationField::new(|_, t| [1.0 + t, 0.0, 0.0]));
+    case.physics.acceleration_field = Some(VectorField::new(|_, t| [1.0 + t, 0.0, 0.0]));
     let (mut simulation, fields) = case.evaluate(at_rest, |_| DENSITY);
     simulation.advance(20).unwrap();
     let t = simulation.clock().time();
@@ -349,6 +349,29 @@ fn an_acceleration_that_varies_is_asked_where_and_when_a_particle_is() {
     for &v in columns.values(fields.velocity[0]) {
         assert!((v - (t + 0.5 * t * t)).abs() < 1e-12, "{v} at {t}");
     }
+}
+
+#[test]
+fn a_fringe_brings_the_fluid_to_its_velocity_and_leaves_the_rest_alone() {
+    let mut case = Case::square(10.0, 0.2, true, Stabilisation::default());
+    let velocity = VectorField::new(|[_, y, _], _| [1.0 + y, -2.0, 0.0]);
+    // The weight is 1 from half of its length on, to three quarters.
+    case.physics.fringe = Some(Fringe { from: 0.3, to: 0.9, rate: 7.0, velocity });
+    let moving = |_: [f64; 3]| [0.5, 0.25, 0.0];
+    let mut seen = [0; 3];
+    for (a, &[x, y, _]) in accelerations(&case, moving, |_| DENSITY).iter().zip(&case.positions) {
+        let full = [7.0 * (0.5 + y), 7.0 * -2.25];
+        let (zone, least, most) = match x {
+            0.6..=0.75 => (0, 1.0, 1.0),
+            0.3..0.9 => (1, 0.0, 1.0),
+            _ => (2, 0.0, 0.0),
+        };
+        seen[zone] += 1;
+        let weight = a[1] / full[1];
+        assert!((least - 1e-12..=most + 1e-12).contains(&weight), "{weight} at {x}");
+        assert!((a[0] - weight * full[0]).abs() < 1e-12);
+    }
+    assert!(seen.iter().all(|&count| count > 0), "{seen:?}");
 }
 
 #[test]

@@ -11,8 +11,8 @@
 use finegrain_framework::run::{Every, Run, Summary};
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
-use finegrain_framework::{Real, Simulation, Whole};
-use finegrain_sph::{AccelerationField, Fields, Fluid, Physics, Sph, Start, measure};
+use finegrain_framework::{Real, Simulation, VectorField, Whole};
+use finegrain_sph::{Fields, Fluid, Physics, Sph, Start, measure};
 
 use super::{Flow, SphScene, free_surface};
 use crate::scene::drop::{self, Drop};
@@ -99,8 +99,7 @@ fn build<T: Real, P: Real>(
     };
     let has_force = drop.frequency > 0.0;
     let physics = Physics {
-        acceleration_field: has_force
-            .then(|| AccelerationField::new(move |x, _| drop.acceleration(x))),
+        acceleration_field: has_force.then(|| VectorField::new(move |x, _| drop.acceleration(x))),
         ..Physics::default()
     };
     let scheme = free_surface::scheme(parameters, speed);
