@@ -73,7 +73,7 @@ pub const HARD_CASES: [HardCase; 7] = [
     HardCase {
         name: "dam break, far wall and back",
         scene: "dam-break",
-        settings: &[],
+        settings: &[("resolution", "20")],
         until: 5.0,
         variants: FREE_SURFACE,
         signs: &[THROUGH_WALLS, ENERGY, CLUMPING],
@@ -81,7 +81,7 @@ pub const HARD_CASES: [HardCase; 7] = [
     HardCase {
         name: "hydrostatic, 200 sqrt(H/g)",
         scene: "hydrostatic-tank",
-        settings: &[],
+        settings: &[("resolution", "20")],
         // Depth 1 m.
         until: 63.86,
         variants: FREE_SURFACE,
@@ -96,7 +96,7 @@ pub const HARD_CASES: [HardCase; 7] = [
         // An array, not a channel: each cylinder stands in the wake of the one before.
         name: "cylinders, inertial",
         scene: "cylinder",
-        settings: &[("viscosity", "1e-6"), ("body_acceleration", "2e-5"), ("resolution", "40")],
+        settings: &[("viscosity", "1e-6"), ("body_acceleration", "2e-5"), ("resolution", "25")],
         // Twice the time in which the flow would be at its speed without inertia.
         until: 700.0,
         variants: BETWEEN_WALLS,

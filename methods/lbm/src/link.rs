@@ -97,6 +97,25 @@ mod tests {
         }
     }
 
+    /// Steady shear whose velocity is that of a wall on its surface: the populations of the
+    /// equilibrium and, to first order in its slope, of the rest, go on as they are.
+    #[test]
+    fn shear_along_a_wall_that_slides_is_kept() {
+        let (rest, share, wall_velocity, slope, relaxation_time) = (0.02, 0.3, 0.7, 0.05, 0.8);
+        for fraction in [0.01, 0.3, 0.5, 0.7, 1.0] {
+            // Along the velocity that comes out, against the distance from this site.
+            let velocity = |n: f64| wall_velocity + slope * (n + fraction);
+            let at = |opposite: bool, n: i32| {
+                let sign = if opposite { -1.0 } else { 1.0 };
+                let stress = (1.0 - relaxation_time) * share * slope;
+                rest + sign * share * velocity(f64::from(n)) + stress
+            };
+            let link = link(fraction, Wall::Interpolated, true, 2.0 * share * wall_velocity);
+            let expected = rest + share * velocity(0.0) - relaxation_time * share * slope;
+            assert!((link.returned(at) - expected).abs() < 1e-15, "{fraction}");
+        }
+    }
+
     #[test]
     fn half_way_is_what_is_left_without_a_next_site() {
         let at = |opposite: bool, n: i32| {
