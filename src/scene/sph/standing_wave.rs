@@ -85,7 +85,8 @@ impl<T: Real, P: Real> Flow<T, P> for WaveFlow {
 
     /// `period`, from the moments when the water turns;
     /// `energy_growth` over all energy, that in gravity counted from the bottom;
-    /// `wave_energy_growth` and `wave_energy_change` over that of the wave alone; `through_walls`.
+    /// `wave_energy_growth` over that of the wave alone; `through_walls`; `amplitude_decay`, the rate,
+    /// 1/s, at which the velocity falls from one of its extremes to the next.
     fn judge(
         &self,
         report: &mut Report,
@@ -94,11 +95,10 @@ impl<T: Real, P: Real> Flow<T, P> for WaveFlow {
         _: &Fields<T, P>,
         _: f64,
     ) {
-        if let Some([growth, change]) =
+        if let Some([growth, _]) =
             free_surface::energy_changes(&summary.histories, self.scene.energy())
         {
             report.result("wave_energy_growth", growth, None);
-            report.result("wave_energy_change", change, None);
             let all = summary.histories[0].column("total_energy").and_then(|mut e| e.next());
             if let Some(all) = all {
                 report.result("energy_growth", growth * self.scene.energy() / all, None);
@@ -119,6 +119,14 @@ impl<T: Real, P: Real> Flow<T, P> for WaveFlow {
         if let ([first, .., last], 3..) = (&turns[..], turns.len()) {
             let period = 2.0 * (last - first) / (turns.len() - 1) as f64;
             report.result("period", period, Some(self.scene.period()));
+        }
+        let is_extreme = |&k: &usize| {
+            phase[k].abs() > phase[k - 1].abs() && phase[k].abs() >= phase[k + 1].abs()
+        };
+        let extremes: Vec<_> = (1..phase.len().saturating_sub(1)).filter(is_extreme).collect();
+        if let [first, .., last] = extremes[..] {
+            let time = wave.times()[last] - wave.times()[first];
+            report.result("amplitude_decay", (phase[first] / phase[last]).abs().ln() / time, None);
         }
     }
 
