@@ -1,11 +1,9 @@
-//! Velocity on points of the plane, from the particles around.
+//! Fields on points of the plane, from the particles around.
 
 use finegrain_framework::{Columns, Real, State};
 use finegrain_sph::Fields;
 
-/// Velocity at each of `points`: a linear fit to the particles of the fluid within three spacings,
-/// weighted with a Gaussian. NaN where there are too few. With the sides of a cell, the particles
-/// are those of its periodic images, too.
+/// Velocity at each of `points`, see [`values`].
 pub fn velocities<T: Real, P: Real>(
     columns: &Columns,
     fields: &Fields<T, P>,
@@ -13,15 +11,29 @@ pub fn velocities<T: Real, P: Real>(
     spacing: f64,
     cell: Option<[f64; 2]>,
 ) -> Vec<[f64; 2]> {
-    // Sums of w (1, x, y) (1, x, y)^T, and of w (1, x, y) (u, v).
-    let mut sums = vec![([[0.0; 3]; 3], [[0.0; 2]; 3]); points.len()];
+    let velocity = [fields.velocity[0], fields.velocity[1]];
+    values(columns, fields, velocity, points, spacing, cell)
+}
+
+/// The values of `quantities` at each of `points`: a linear fit to the particles of the fluid within
+/// three spacings, weighted with a Gaussian. NaN where there are too few. With the sides of a cell,
+/// the particles are those of its periodic images, too.
+pub fn values<T: Real, P: Real, const N: usize>(
+    columns: &Columns,
+    fields: &Fields<T, P>,
+    quantities: [State<T>; N],
+    points: &[[f64; 2]],
+    spacing: f64,
+    cell: Option<[f64; 2]>,
+) -> Vec<[f64; N]> {
+    // Sums of w (1, x, y) (1, x, y)^T, and of w (1, x, y) times each quantity.
+    let mut sums = vec![([[0.0; 3]; 3], [[0.0; N]; 3]); points.len()];
     for i in 0..columns.points() {
         if fields.wall_depth.is_some_and(|depth| columns.values(depth)[i] > T::zero()) {
             continue;
         }
-        let value = |column: State<T>| columns.values(column)[i].as_f64();
+        let own = quantities.map(|column| columns.values(column)[i].as_f64());
         let at = [0, 1].map(|a| columns.values(fields.position[a])[i].as_f64());
-        let v = [value(fields.velocity[0]), value(fields.velocity[1])];
         for ((matrix, right), point) in sums.iter_mut().zip(points) {
             let mut x = [at[0] - point[0], at[1] - point[1]];
             if let Some(cell) = cell {
@@ -37,15 +49,17 @@ pub fn velocities<T: Real, P: Real>(
                     for k in 0..3 {
                         matrix[j][k] += weight * basis[j] * basis[k];
                     }
-                    for a in 0..2 {
-                        right[j][a] += weight * basis[j] * v[a];
+                    for n in 0..N {
+                        right[j][n] += weight * basis[j] * own[n];
                     }
                 }
             }
         }
     }
     sums.iter()
-        .map(|(matrix, right)| [0, 1].map(|a| first_unknown(matrix, right.map(|r| r[a]))))
+        .map(|(matrix, right)| {
+            std::array::from_fn(|n| first_unknown(matrix, right.map(|right| right[n])))
+        })
         .collect()
 }
 
