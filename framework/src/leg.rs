@@ -12,6 +12,7 @@ use crate::columns::{ColumnId, Columns, Role};
 use crate::domain::{Domain, Partition};
 use crate::stage::Fault;
 use crate::step::{Entry, Step};
+use crate::trace::{Event, Trace};
 use crate::view::{Near, Own, Place, Rates, Slot, slots_of};
 
 /// What went wrong in a leg, and where.
@@ -130,13 +131,14 @@ pub(crate) struct Leg<'a, D: Domain> {
     clock: &'a Clock,
     steps: Range<u64>,
     check_every: Option<u64>,
+    trace: Option<&'a Trace>,
     failed: AtomicBool,
     failure: Mutex<Option<Failure>>,
 }
 
 impl<'a, D: Domain> Leg<'a, D> {
     /// A leg of `steps` steps; state columns are checked to be finite after every step whose
-    /// number (from 1) divides by `check_every`.
+    /// number (from 1) divides by `check_every`; what the workers do goes into `trace`.
     ///
     /// # Panics
     /// If the partition is not sealed or has other points than the columns.
@@ -148,6 +150,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         clock: &'a Clock,
         steps: Range<u64>,
         check_every: Option<u64>,
+        trace: Option<&'a Trace>,
     ) -> Self {
         let partition = domain.partition();
         assert!(partition.is_sealed(), "the domain's partition is not sealed");
@@ -166,6 +169,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             clock,
             steps,
             check_every,
+            trace,
             failed: AtomicBool::new(false),
             failure: Mutex::new(None),
         }
@@ -300,10 +304,15 @@ impl<D: Domain> Work for Leg<'_, D> {
         if self.failed() {
             return;
         }
+        let begin = self.trace.map(Trace::now);
         // One net under everything: a worker that unwound would leave the others waiting for it.
         let at = Cell::new(self.step.part_start[part]);
         let outcome =
             catch_unwind(AssertUnwindSafe(|| self.run_part(worker, step, part, sub_domain, &at)));
+        if let (Some(trace), Some(begin)) = (self.trace, begin) {
+            let (part, sub_domain) = (part as u32, sub_domain as u32);
+            trace.record(worker, Event { begin, end: trace.now(), step, part, sub_domain });
+        }
         let cause = match outcome {
             Ok(Ok(())) => return,
             Ok(Err(cause)) => cause,

@@ -17,6 +17,7 @@
 //! | vectorise it where the compiler does not | [`pack`], [`lanes`] |
 //! | build a step | [`Integrator::plan`], or [`Step::builder`] |
 //! | run it | [`Simulation`]; with outputs, checkpoints and restart [`run::Run`] |
+//! | see who did what when | [`Settings::trace`], [`trace`] |
 //!
 //! # Example
 //! Heat in a ring: the rate stage computes the next temperature, which then takes the place of the
@@ -94,6 +95,7 @@ mod stage;
 mod step;
 mod sync;
 mod team;
+pub mod trace;
 mod vector_field;
 mod view;
 mod viewable;

@@ -24,6 +24,7 @@ use crate::leg::{Cause, Desk, Failure, Leg, panic_message};
 use crate::schedule::{Executor, Schedule};
 use crate::stage::Fault;
 use crate::step::Step;
+use crate::trace::Trace;
 use crate::whole::{Pace, Partials, Whole};
 
 /// A model being run.
@@ -41,6 +42,7 @@ pub struct Simulation<D: Domain> {
     begun: bool,
     /// Whether the derived fields are those of the present state.
     derived: bool,
+    trace: Option<Trace>,
     settings: Settings,
 }
 
@@ -63,8 +65,13 @@ impl<D: Domain> Simulation<D> {
                 stage.name()
             );
         }
-        let executor =
+        let mut executor =
             Executor::new(settings.schedule, settings.workers, settings.hand_out.clone())?;
+        let step = &model.plan.step;
+        let trace = (settings.trace > 0).then(|| {
+            let parts = (0..step.parts()).map(|part| step.part_name(part)).collect();
+            Trace::new(parts, executor.team().workers(), settings.trace)
+        });
         Ok(Self {
             desk: Desk::new(&model.plan.step, &model.columns, settings.workers),
             executor,
@@ -76,6 +83,7 @@ impl<D: Domain> Simulation<D> {
             instruction_sets: vec![crate::lanes::instruction_set().to_owned()],
             begun: false,
             derived: false,
+            trace,
             settings,
         })
     }
@@ -98,6 +106,11 @@ impl<D: Domain> Simulation<D> {
     /// Where the run is in time.
     pub fn clock(&self) -> &Clock {
         &self.clock
+    }
+
+    /// What the workers did last, if [`Settings::trace`] asks for it.
+    pub fn trace(&self) -> Option<&Trace> {
+        self.trace.as_ref()
     }
 
     /// How it is run.
@@ -204,9 +217,15 @@ impl<D: Domain> Simulation<D> {
                 &self.clock,
                 first..first + steps,
                 self.settings.check_every,
+                self.trace.as_ref(),
             );
+            let begin = self.trace.as_ref().map(Trace::now);
             self.executor.run(&leg);
-            leg.finish().map_err(|failure| self.error(failure))?;
+            let outcome = leg.finish();
+            if let (Some(trace), Some(begin)) = (&mut self.trace, begin) {
+                trace.record_leg(begin, first);
+            }
+            outcome.map_err(|failure| self.error(failure))?;
             self.clock.advance(steps);
             self.pace_left -= steps;
             left -= steps;
@@ -372,7 +391,7 @@ fn run_once<D: Domain>(
 ) -> Result<(), Failure> {
     let mut desk = Desk::new(step, columns, workers);
     let now = clock.step();
-    let leg = Leg::new(domain, columns, step, &mut desk, clock, now..now + 1, None);
+    let leg = Leg::new(domain, columns, step, &mut desk, clock, now..now + 1, None, None);
     executor.run(&leg);
     leg.finish()
 }

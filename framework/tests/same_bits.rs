@@ -29,8 +29,16 @@ fn settings() -> Vec<Settings> {
                 };
                 for &steps_ahead in ahead {
                     let hand_out = hand_out.clone();
+                    let trace = if matches!(hand_out, HandOut::Natural) { 0 } else { 16 };
                     let check_every = Some(3);
-                    all.push(Settings { schedule, workers, hand_out, check_every, steps_ahead });
+                    all.push(Settings {
+                        schedule,
+                        workers,
+                        hand_out,
+                        check_every,
+                        steps_ahead,
+                        trace,
+                    });
                 }
             }
         }

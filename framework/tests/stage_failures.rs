@@ -47,7 +47,8 @@ fn all_settings() -> Vec<Settings> {
         for workers in [1, 2, 5] {
             for hand_out in [HandOut::Natural, HandOut::Shuffled { seed: 1 }] {
                 let check_every = Some(1);
-                all.push(Settings { schedule, workers, hand_out, check_every, steps_ahead: None });
+                let chosen = Settings { schedule, workers, hand_out, ..Settings::default() };
+                all.push(Settings { check_every, ..chosen });
             }
         }
     }

@@ -17,6 +17,11 @@ pub struct Settings {
     /// Most steps that `PeerToPeer` runs between meetings; chosen from the size of the cache and
     /// of a sub-domain if `None`.
     pub steps_ahead: Option<u64>,
+    /// Parts that each worker remembers having run, 32 bytes each, see [`Simulation::trace`]; 0
+    /// records nothing and costs nothing.
+    ///
+    /// [`Simulation::trace`]: crate::Simulation::trace
+    pub trace: usize,
 }
 
 impl Default for Settings {
@@ -27,6 +32,7 @@ impl Default for Settings {
             hand_out: HandOut::default(),
             check_every: Some(10),
             steps_ahead: None,
+            trace: 0,
         }
     }
 }
