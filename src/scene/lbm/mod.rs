@@ -47,14 +47,25 @@ fn refused(precision: Precision) -> SceneError {
 }
 
 /// Parameters of the collision, which all scenes share.
-const COLLISION: [Parameter; 2] = [
-    Parameter::choice("collision", &["trt", "regularised", "bgk"], "how populations relax"),
+const COLLISION: [Parameter; 3] = [
+    Parameter::choice(
+        "collision",
+        &["trt", "mrt", "regularised", "central-moments", "cumulant", "bgk"],
+        "how populations relax",
+    ),
     Parameter::number(
         "magic",
         3.0 / 16.0,
         [1e-3, 10.0],
         "",
-        "magic parameter, with trt (Ginzburg et al. 2008)",
+        "magic parameter, with trt and mrt (Ginzburg et al. 2008)",
+    ),
+    Parameter::number(
+        "smagorinsky",
+        0.0,
+        [0.0, 1.0],
+        "",
+        "constant of the viscosity of eddies (Smagorinsky 1963; Hou et al. 1996); 0: none",
     ),
 ];
 
@@ -93,6 +104,9 @@ fn scheme(parameters: &Parameters, lattice: LatticeKind, has_walls: bool) -> Sch
         lattice,
         collision: match parameters.choice("collision") {
             "bgk" => Collision::Bgk,
+            "mrt" => Collision::Mrt { magic: parameters.number("magic") },
+            "central-moments" => Collision::CentralMoments,
+            "cumulant" => Collision::Cumulant,
             "regularised" => Collision::Regularised,
             _ => Collision::Trt { magic: parameters.number("magic") },
         },
@@ -100,6 +114,7 @@ fn scheme(parameters: &Parameters, lattice: LatticeKind, has_walls: bool) -> Sch
             true => Wall::HalfWay,
             false => Wall::Interpolated,
         },
+        smagorinsky: Some(parameters.number("smagorinsky")).filter(|constant| *constant > 0.0),
     }
 }
 

@@ -19,8 +19,8 @@ use crate::scene::{Precision, Report, SceneError};
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::LATTICE, super::MACH.with_default(0.05)];
-    let [collision, magic] = super::COLLISION;
-    let collision = [collision.with_default_choice("regularised"), magic];
+    let [collision, magic, eddies] = super::COLLISION;
+    let collision = [collision.with_default_choice("regularised"), magic, eddies];
     [&taylor_green::PARAMETERS[..], &collision, &own].concat()
 }
 
