@@ -24,9 +24,13 @@ macro_rules! prepare_with {
 
 pub mod cavity;
 pub mod channel;
+pub mod channel_cylinder;
 pub mod cylinder;
+pub mod double_shear_layer;
 pub mod shear_wave;
+pub mod sphere_array;
 pub mod taylor_green;
+pub mod womersley;
 
 use finegrain_framework::Simulation;
 use finegrain_framework::run::{Dump, Run, Summary};
@@ -50,7 +54,7 @@ fn refused(precision: Precision) -> SceneError {
 const COLLISION: [Parameter; 3] = [
     Parameter::choice(
         "collision",
-        &["trt", "mrt", "regularised", "central-moments", "cumulant", "bgk"],
+        &["cumulant", "central-moments", "regularised", "trt", "mrt", "bgk"],
         "how populations relax",
     ),
     Parameter::number(
@@ -68,6 +72,14 @@ const COLLISION: [Parameter; 3] = [
         "constant of the viscosity of eddies (Smagorinsky 1963; Hou et al. 1996); 0: none",
     ),
 ];
+
+/// The same for slow flow along walls, which two relaxation times keep where they are.
+fn collision_at_walls() -> [Parameter; 3] {
+    COLLISION.map(|parameter| match parameter.name {
+        "collision" => parameter.with_default_choice("trt"),
+        _ => parameter,
+    })
+}
 
 /// For scenes with bodies.
 const WALL: Parameter = Parameter::choice(
@@ -104,11 +116,11 @@ fn scheme(parameters: &Parameters, lattice: LatticeKind, has_walls: bool) -> Sch
         lattice,
         collision: match parameters.choice("collision") {
             "bgk" => Collision::Bgk,
-            "mrt" => Collision::Mrt { magic: parameters.number("magic") },
             "central-moments" => Collision::CentralMoments,
-            "cumulant" => Collision::Cumulant,
             "regularised" => Collision::Regularised,
-            _ => Collision::Trt { magic: parameters.number("magic") },
+            "trt" => Collision::Trt { magic: parameters.number("magic") },
+            "mrt" => Collision::Mrt { magic: parameters.number("magic") },
+            _ => Collision::Cumulant,
         },
         wall: match has_walls && parameters.choice("wall") == "half-way" {
             true => Wall::HalfWay,
@@ -166,6 +178,28 @@ impl<T: Compiled> Final<T> {
         velocity
     }
 
+    /// Velocity along x and y at a point of the lowest plane, m/s, by cubics through four sites in each
+    /// direction, around periodic ends; sites in bodies count as at rest.
+    fn interpolated_velocity(&self, simulation: &Simulation<Grid>, point: [f64; 2]) -> [f64; 2] {
+        let first = self.position([0; 3]);
+        let place = [0, 1].map(|a| (point[a] - first[a]) / self.mesh.spacing);
+        let lowest = place.map(|p| p.floor() as isize - 1);
+        let [along_x, along_y] = place.map(|p| cubic(p - p.floor()));
+        let mut velocity = [0.0; 2];
+        for (dy, wy) in (0..).zip(along_y) {
+            for (dx, wx) in (0..).zip(along_x) {
+                let [nx, ny, _] = self.mesh.shape.map(|n| n as isize);
+                let x = (lowest[0] + dx).rem_euclid(nx) as usize;
+                let y = (lowest[1] + dy).rem_euclid(ny) as usize;
+                let found = self.velocity(simulation, [x, y, 0]);
+                for a in 0..2 {
+                    velocity[a] += wx * wy * found[a];
+                }
+            }
+        }
+        velocity
+    }
+
     /// Position of a site, m.
     fn position(&self, site: [usize; 3]) -> [f64; 3] {
         self.mesh.position(site.map(|i| i as isize))
@@ -176,6 +210,16 @@ impl<T: Compiled> Final<T> {
         let [nx, ny, nz] = self.mesh.shape;
         (0..nx * ny * nz).map(move |i| [i % nx, i / nx % ny, i / (nx * ny)])
     }
+}
+
+/// Lagrange's weights of sites at -1, 0, 1, 2 for a place between 0 and 1.
+fn cubic(x: f64) -> [f64; 4] {
+    [
+        -x * (x - 1.0) * (x - 2.0) / 6.0,
+        (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0,
+        -(x + 1.0) * x * (x - 2.0) / 2.0,
+        (x + 1.0) * x * (x - 1.0) / 6.0,
+    ]
 }
 
 /// A scene with its model.
