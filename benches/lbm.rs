@@ -23,11 +23,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "| lattice, collision, scalar | workers | schedule | best | median | beside 1 worker |"
     );
     println!("|---|---|---|---|---|---|");
-    let trt = Collision::default();
+    let trt = Collision::Trt { magic: 3.0 / 16.0 };
     for (lattice, collision) in [
         (LatticeKind::D3Q19, trt),
         (LatticeKind::D3Q19, Collision::Bgk),
         (LatticeKind::D3Q19, Collision::Regularised),
+        (LatticeKind::D3Q19, Collision::Cumulant),
         (LatticeKind::D3Q27, trt),
     ] {
         compare::<f64>(lattice, collision, cores)?;

@@ -23,6 +23,7 @@ pub mod bench;
 pub mod figure;
 pub mod report;
 pub mod scene;
+pub mod trace;
 
 pub use finegrain_framework as framework;
 pub use finegrain_lbm as lbm;

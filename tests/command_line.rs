@@ -47,6 +47,38 @@ fn scenes_are_listed_with_their_parameters() {
 }
 
 #[test]
+fn a_trace_shows_every_part_of_every_worker() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = small(&["--steps", "4", "--workers", "2", "--trace", "trace.json", "--json"]);
+    let output = finegrain(&arguments, folder.path());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("balance"));
+    let line = json(&output);
+    let text = std::fs::read_to_string(folder.path().join("trace.json")).unwrap();
+    let trace: Value = serde_json::from_str(&text).unwrap();
+    let events = trace["traceEvents"].as_array().unwrap();
+    let rows: Vec<_> =
+        events.iter().filter(|e| e["ph"] == "M").map(|e| &e["args"]["name"]).collect();
+    assert_eq!(rows, ["worker 0", "worker 1", "steps"]);
+    let mut parts = std::collections::BTreeSet::new();
+    for event in events.iter().filter(|e| e["ph"] == "X" && e["tid"] != 2) {
+        assert!(event["dur"].as_f64().is_some_and(|duration| duration >= 0.0));
+        assert!(event["tid"].as_u64().is_some_and(|worker| worker < 2));
+        let [step, sub_domain] = ["step", "sub_domain"].map(|key| event["args"][key].as_u64());
+        let place = (step.unwrap(), event["name"].as_str().unwrap(), sub_domain.unwrap());
+        assert!(parts.insert(place), "{place:?} twice");
+    }
+    // As many in each of the steps, and the same bits as without.
+    let of_step = |step| parts.iter().filter(|part| part.0 == step).count();
+    assert!(of_step(0) > 4 && (1..4).all(|step| of_step(step) == of_step(0)));
+    let plain = json(&finegrain(&small(&["--steps", "4", "--json"]), folder.path()));
+    assert_eq!(line["state_hash"], plain["state_hash"]);
+    let nowhere = small(&["--steps", "1", "--trace", "no/such/folder/t.json"]);
+    assert!(
+        complaint(&nowhere, folder.path()).contains("cannot write trace `no/such/folder/t.json`")
+    );
+}
+
+#[test]
 fn the_last_line_is_json_with_everything_in_it() {
     let folder = tempfile::tempdir().unwrap();
     let line = json(&finegrain(&small(&["--steps", "5", "--json"]), folder.path()));

@@ -47,6 +47,9 @@ pub trait Pack:
     /// As [`Pack::packs`], to be written.
     fn packs_mut(simd: Self::Simd, to: &mut [Self::Scalar]) -> &mut [Self::Vector];
 
+    /// The square root of each.
+    fn sqrt(self) -> Self;
+
     /// What memory holds of a pack.
     type Vector: Copy;
 
@@ -87,7 +90,8 @@ pub trait Packed: Sized {
 macro_rules! packed {
     (
         $scalar:ident, $pack:ident, $vector:ident, $lanes:ident, $splat:ident,
-        $packs:ident, $packs_mut:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident
+        $packs:ident, $packs_mut:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident,
+        $sqrt:ident
     ) => {
         #[doc = concat!("A pack of `", stringify!($scalar), "`.")]
         #[derive(Clone, Copy)]
@@ -124,6 +128,11 @@ macro_rules! packed {
             #[inline(always)]
             fn packs_mut(_: S, to: &mut [$scalar]) -> &mut [S::$vector] {
                 S::$packs_mut(to).0
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self { simd: self.simd, vector: self.simd.$sqrt(self.vector) }
             }
 
             #[inline(always)]
@@ -193,7 +202,8 @@ packed!(
     sub_f32s,
     mul_f32s,
     div_f32s,
-    neg_f32s
+    neg_f32s,
+    sqrt_f32s
 );
 packed!(
     f64,
@@ -207,14 +217,15 @@ packed!(
     sub_f64s,
     mul_f64s,
     div_f64s,
-    neg_f64s
+    neg_f64s,
+    sqrt_f64s
 );
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// `y = (2 x + y) / (1 - x y)` over whole packs.
+    /// `y = sqrt((2 x + y)^2) / (1 - x y)` over whole packs.
     struct Task<'a, T> {
         x: &'a [T],
         y: &'a mut [T],
@@ -230,7 +241,8 @@ mod tests {
             let x = T::Pack::<S>::packs(simd, self.x);
             for (y, &x) in T::Pack::<S>::packs_mut(simd, self.y).iter_mut().zip(x) {
                 let (a, b) = (T::Pack::<S>::of(simd, x), T::Pack::<S>::of(simd, *y));
-                *y = ((a * T::of(2.0) + b) / (-(a * b) + T::one())).vector();
+                let above = a * T::of(2.0) + b;
+                *y = ((above * above).sqrt() / (-(a * b) + T::one())).vector();
             }
             lanes
         }
@@ -241,7 +253,8 @@ mod tests {
         let y: Vec<T> = x.iter().map(|x| x.sin() * T::of(0.7)).collect();
         let mut expected = y.clone();
         for (y, &x) in expected.iter_mut().zip(&x) {
-            *y = (x * T::of(2.0) + *y) / (-(x * *y) + T::one());
+            let above = x * T::of(2.0) + *y;
+            *y = (above * above).sqrt() / (-(x * *y) + T::one());
         }
         let mut now = y.clone();
         let lanes = pulp::Arch::new().dispatch(Task { x: &x, y: &mut now });

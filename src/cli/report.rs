@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
-use finegrain::report::hard_cases::{HARD_CASES, HardCase};
+use finegrain::report::hard_cases::{self, HardCase};
 use finegrain::report::stability::{self, Plan};
 
 use super::CommandError;
@@ -23,6 +23,9 @@ pub struct StabilityArguments {
     /// Only cases whose name contains this.
     #[arg(long, default_value = "")]
     case: String,
+    /// Only cases of this method.
+    #[arg(long, value_parser = ["sph", "lbm"])]
+    method: Option<String>,
     /// Begin no run after so many minutes.
     #[arg(long, default_value_t = 60.0)]
     budget: f64,
@@ -37,10 +40,14 @@ pub struct StabilityArguments {
 /// Makes a report.
 pub fn report(command: ReportCommand) -> Result<(), CommandError> {
     let ReportCommand::Stability(arguments) = command;
+    let is_asked_for = |case: &HardCase| {
+        case.name.contains(&arguments.case)
+            && arguments.method.as_ref().is_none_or(|method| case.method == method)
+    };
     let cases: Vec<HardCase> =
-        HARD_CASES.iter().filter(|case| case.name.contains(&arguments.case)).copied().collect();
+        hard_cases::all().filter(|case| is_asked_for(case)).copied().collect();
     if cases.is_empty() {
-        let known: Vec<_> = HARD_CASES.iter().map(|case| case.name).collect();
+        let known: Vec<_> = hard_cases::all().map(|case| case.name).collect();
         let known = known.join(", ");
         return Err(format!("no case contains {:?}; there are {known}", arguments.case).into());
     }

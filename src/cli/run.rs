@@ -59,6 +59,10 @@ pub struct RunArguments {
     /// is always written at the end, Ctrl-C included.
     #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
     checkpoint_every: Option<u64>,
+    /// Write which worker ran which sub-domain's which stage when, the last 200,000 parts of each
+    /// worker, as a trace that chrome://tracing and ui.perfetto.dev open; and say what it sums up to.
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
     /// Go on from this checkpoint; scene, parameters and precision must be those of its run.
     #[arg(long, value_name = "FILE")]
     restart: Option<PathBuf>,
@@ -154,6 +158,12 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         .prepare(Some(method), &parameters, precision)
         .map_err(|e| if is_files_method { in_file(e.into()) } else { e.into() })?;
 
+    if let Some(path) = &arguments.trace {
+        // Before the run, not after it.
+        std::fs::File::create(path)
+            .map_err(|why| format!("cannot write trace `{}`: {why}", path.display()))?;
+    }
+
     let (stop, stops) = Port::unbounded("stop");
     // The first Ctrl-C ends the run in order, the second ends the process.
     let asked = AtomicBool::new(false);
@@ -172,6 +182,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         out: arguments.out.clone(),
         dump_every: arguments.dump_every,
         checkpoint_every: arguments.checkpoint_every,
+        trace: arguments.trace,
         restart: arguments.restart,
         progress: bar.as_ref().map(|bar| bar.port.clone()),
         stops: Some(stops),
@@ -241,6 +252,9 @@ fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
     if report.instruction_sets.len() > 1 {
         let sets = report.instruction_sets.join(", then ");
         writeln!(out, "  computed with {sets}: the bits are not those of either alone")?;
+    }
+    if let Some(trace) = &report.trace {
+        writeln!(out, "{trace}")?;
     }
     for note in &report.notes {
         writeln!(out, "  note: {note}")?;

@@ -46,11 +46,11 @@ pub struct Entry {
     pub outcome: Outcome,
     /// Wall-clock time of that run, s.
     pub wall_s: f64,
-    /// Largest Courant number of [`COURANT_NUMBERS`], counted from the first, that all survive.
+    /// Largest of [`COURANT_NUMBERS`], counted from the first, that all survive, where they are tried.
     pub largest_courant: Option<f64>,
 }
 
-/// Courant numbers that are tried, in units of the scene's own.
+/// Courant numbers that are tried where a method has them, in units of the scene's own.
 pub const COURANT_NUMBERS: [f64; 5] = [1.0, 1.5, 2.0, 3.0, 4.0];
 
 /// What to run.
@@ -102,37 +102,44 @@ fn entry(
     left: Duration,
 ) -> Result<Entry, SceneError> {
     let begun = Instant::now();
-    let (outcome, wall_s) = run(case, variant, COURANT_NUMBERS[0], workers, left)?;
     let survives = |outcome: &Outcome| matches!(outcome, Outcome::Survives | Outcome::Wrong(_));
-    let mut largest_courant = survives(&outcome).then_some(COURANT_NUMBERS[0]);
-    for &courant in &COURANT_NUMBERS[1..] {
-        let left = left.saturating_sub(begun.elapsed());
-        if largest_courant.is_none() || left.is_zero() {
-            break;
+    let (outcome, wall_s) = run(case, variant, None, workers, left)?;
+    let mut largest_courant = None;
+    if let (Some(name), true) = (case.time_step, survives(&outcome)) {
+        largest_courant = Some(COURANT_NUMBERS[0]);
+        for &courant in &COURANT_NUMBERS[1..] {
+            let left = left.saturating_sub(begun.elapsed());
+            if left.is_zero() {
+                break;
+            }
+            let (longer, _) = run(case, variant, Some((name, courant)), workers, left)?;
+            if !survives(&longer) {
+                break;
+            }
+            largest_courant = Some(courant);
         }
-        let (longer, _) = run(case, variant, courant, workers, left)?;
-        if !survives(&longer) {
-            break;
-        }
-        largest_courant = Some(courant);
     }
     let (case, variant) = (case.name, variant.name);
     Ok(Entry { case, variant, outcome, wall_s, largest_courant })
 }
 
-/// Outcome and wall-clock time of one run.
+/// Outcome and wall-clock time of one run, with a parameter so many times its own.
 fn run(
     case: &HardCase,
     variant: &Variant,
-    courant: f64,
+    longer: Option<(&'static str, f64)>,
     workers: Option<usize>,
     left: Duration,
 ) -> Result<(Outcome, f64), SceneError> {
     let scene = Scene::find(case.scene)?;
+    let method = Some(case.method);
     let settings = || case.settings.iter().chain(variant.settings).copied();
-    let courant = (courant * scene.set(settings())?.number("courant")).to_string();
-    let parameters = scene.set(settings().chain([("courant", courant.as_str())]))?;
-    let prepared = scene.prepare(None, &parameters, Precision::F64)?;
+    let mut parameters = scene.set_for(method, settings())?;
+    if let Some((name, times)) = longer {
+        let value = (times * parameters.number(name)).to_string();
+        parameters = scene.set_for(method, settings().chain([(name, value.as_str())]))?;
+    }
+    let prepared = scene.prepare(method, &parameters, Precision::F64)?;
     let (until, wall_clock) = (Some(case.until), Some(left));
     let begun = Instant::now();
     let ended = prepared.run(Orders { until, wall_clock, workers, ..Orders::default() });

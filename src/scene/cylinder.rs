@@ -128,6 +128,21 @@ impl Cylinder {
         cases.iter().find(own).map_or(&[], |&(_, _, stations)| stations)
     }
 
+    /// Adds `profiles_l2`: L2 of the difference of the velocities `found` at the stations of the
+    /// reference from those of the reference, over the L2 of these, where there are some.
+    pub fn judge_profiles(&self, report: &mut Report, found: impl Iterator<Item = [f64; 2]>) {
+        let (mut difference, mut size) = (0.0, 0.0);
+        for (station, velocity) in self.reference_profiles().iter().zip(found) {
+            for a in 0..2 {
+                difference += (velocity[a] - station.velocity[a]).powi(2);
+                size += station.velocity[a].powi(2);
+            }
+        }
+        if size > 0.0 {
+            report.error("profiles_l2", (difference / size).sqrt());
+        }
+    }
+
     /// The drag for these parameters in a square cell from an independent solution, where there is
     /// one.
     pub fn reference_drag(&self) -> Option<f64> {

@@ -1,5 +1,7 @@
 //! What can be wrong with a scene.
 
+use std::path::PathBuf;
+
 use finegrain_framework::run::RunFailed;
 
 use super::Precision;
@@ -63,6 +65,14 @@ pub enum SceneError {
     Workers {
         /// How many.
         workers: usize,
+        /// Why.
+        cause: std::io::Error,
+    },
+    /// The trace cannot be written.
+    #[error("cannot write trace `{}`: {cause}", path.display())]
+    Trace {
+        /// Its file.
+        path: PathBuf,
         /// Why.
         cause: std::io::Error,
     },

@@ -5,23 +5,28 @@
 
 pub mod cavity;
 pub mod channel;
+pub mod channel_cylinder;
 pub mod cylinder;
 pub mod dam_break;
+pub mod double_shear_layer;
 pub mod drop;
 pub mod error;
 pub mod hydrostatic_tank;
 pub mod lbm;
 pub mod noh;
 pub mod parameter;
+pub mod peak;
 pub mod report;
 pub mod riemann;
 pub mod rotating_patch;
 pub mod shear_wave;
 pub mod sod;
 pub mod sph;
+pub mod sphere_array;
 pub mod standing_wave;
 pub mod tank;
 pub mod taylor_green;
+pub mod womersley;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -77,6 +82,8 @@ pub struct Orders {
     pub dump_every: Option<u64>,
     /// Write a checkpoint every so many steps, besides the one at the end.
     pub checkpoint_every: Option<u64>,
+    /// Write which worker ran which sub-domain's which stage when to this file.
+    pub trace: Option<PathBuf>,
     /// Go on from this checkpoint.
     pub restart: Option<PathBuf>,
     /// Where progress goes.
@@ -85,10 +92,14 @@ pub struct Orders {
     pub stops: Option<Inbox<()>>,
 }
 
+/// The last parts of each worker that a trace shows.
+const TRACED: usize = 200_000;
+
 impl Orders {
     /// Settings of a simulation for these orders.
     pub fn settings(&self) -> Settings {
-        let settings = Settings { schedule: self.schedule, ..Settings::default() };
+        let trace = if self.trace.is_some() { TRACED } else { 0 };
+        let settings = Settings { schedule: self.schedule, trace, ..Settings::default() };
         Settings { workers: self.workers.unwrap_or(settings.workers), ..settings }
     }
 
@@ -247,6 +258,32 @@ pub const SCENES: &[Scene] = &[
             Method::sph(sph::cavity::parameters, sph::cavity::prepare),
             Method::lbm(lbm::cavity::parameters, lbm::cavity::prepare),
         ],
+    },
+    Scene {
+        name: "channel-cylinder",
+        summary: "flow past a cylinder in a channel with an inlet and an outlet (Schaefer & Turek 1996)",
+        methods: &[
+            Method::lbm(lbm::channel_cylinder::parameters, lbm::channel_cylinder::prepare),
+            Method::sph(sph::channel_cylinder::parameters, sph::channel_cylinder::prepare),
+        ],
+    },
+    Scene {
+        name: "double-shear-layer",
+        summary: "layers of shear that roll up in a periodic box (Minion & Brown 1997)",
+        methods: &[Method::lbm(
+            lbm::double_shear_layer::parameters,
+            lbm::double_shear_layer::prepare,
+        )],
+    },
+    Scene {
+        name: "sphere-array",
+        summary: "creeping flow through a cubic array of spheres (Zick & Homsy 1982)",
+        methods: &[Method::lbm(lbm::sphere_array::parameters, lbm::sphere_array::prepare)],
+    },
+    Scene {
+        name: "womersley",
+        summary: "flow between two plates that a body force moves to and fro (Womersley 1955)",
+        methods: &[Method::lbm(lbm::womersley::parameters, lbm::womersley::prepare)],
     },
     Scene {
         name: "shear-wave",

@@ -125,6 +125,13 @@ impl Parameter {
             Kind::Number { default, least, most } if *least <= value && value <= *most => {
                 *default = value;
             }
+            Kind::Integer { default, least, most }
+                if *least as f64 <= value
+                    && value <= *most as f64
+                    && value as u32 as f64 == value =>
+            {
+                *default = value as u32;
+            }
             _ => panic!("the default is no number in the valid range"),
         }
         self

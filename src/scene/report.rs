@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use finegrain_framework::run::{Stopped, Summary};
+use finegrain_framework::{Domain, Simulation, trace};
 
+use super::SceneError;
 use crate::figure::{Chart, Field, FigureError};
 
 /// What a run looks like in the end.
@@ -71,6 +73,8 @@ pub struct Report {
     pub files: Vec<PathBuf>,
     /// The end.
     pub picture: Option<Picture>,
+    /// How workers spent their time, if a trace was asked for.
+    pub trace: Option<trace::Summary>,
 }
 
 impl Report {
@@ -90,7 +94,26 @@ impl Report {
             notes: Vec::new(),
             files: summary.files.clone(),
             picture: None,
+            trace: None,
         }
+    }
+
+    /// Writes what the workers did to `path`, if there is one, and sums it up.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn trace<D: Domain>(
+        &mut self,
+        simulation: &Simulation<D>,
+        path: Option<PathBuf>,
+    ) -> Result<(), SceneError> {
+        if let (Some(path), Some(trace)) = (path, simulation.trace()) {
+            crate::trace::write(trace, &path)
+                .map_err(|cause| SceneError::Trace { path: path.clone(), cause })?;
+            self.trace = Some(trace.summary());
+            self.files.push(path);
+        }
+        Ok(())
     }
 
     /// Points times steps over wall-clock time.

@@ -52,14 +52,25 @@ impl<'a, 'v, T: Real> Around<'a, 'v, T> {
         self.row(q, [-y, -z]).or_else(|| self.row(q, [0, 0])).unwrap_or_default()
     }
 
+    /// Velocity number `q`.
+    #[inline(always)]
+    pub fn velocity(&self, q: usize) -> [i32; 3] {
+        self.velocities[q]
+    }
+
+    /// Population `q` a step `to` away from site `x`.
+    pub fn at(&self, q: usize, x: usize, to: [i32; 3]) -> T {
+        let row = self.row(q, [to[1], to[2]]).unwrap_or_default();
+        row[wrap(x as i32 + to[0], row.len())]
+    }
+
     /// The population that comes out of a body to site `x`.
     pub fn returned(&self, link: &Link<T>, x: usize) -> T {
         let q = usize::from(link.q);
         let c = self.velocities[q];
         link.returned(|opposite, n| {
             let q = if opposite { crate::lattice::opposite(q) } else { q };
-            let row = self.row(q, [n * c[1], n * c[2]]).unwrap_or_default();
-            row[wrap(x as i32 + n * c[0], row.len())]
+            self.at(q, x, c.map(|c| n * c))
         })
     }
 

@@ -62,11 +62,37 @@ pub enum LbmError {
     },
     /// The mesh ends where there is neither a wall nor another period.
     #[error(
-        "the mesh ends at {position:?} m without a wall: put a body there or make the direction \
-         periodic"
+        "the mesh ends at {position:?} m without a wall: put a body or an opening there or make the \
+         direction periodic"
     )]
     Open {
         /// The first place beyond the mesh that is in no body.
+        position: [f64; 3],
+    },
+    /// An opening where the mesh has no end, or two ends that are the same.
+    #[error(
+        "there can be no opening across {axis}: the direction must not be periodic and have at \
+         least 3 sites"
+    )]
+    Opening {
+        /// The direction across.
+        axis: &'static str,
+    },
+    /// More openings than a mesh has ends.
+    #[error("{0} openings; a mesh has 6 ends")]
+    Openings(usize),
+    /// Two openings share an edge, or are the same end.
+    #[error("two openings meet at {position:?} m: separate them by a wall")]
+    OpeningsMeet {
+        /// A site that lies on both.
+        position: [f64; 3],
+    },
+    /// A body is right behind an opening.
+    #[error(
+        "a body blocks the opening at {position:?} m: leave at least one site of the fluid there"
+    )]
+    OpeningBlocked {
+        /// A site on the plane of the opening.
         position: [f64; 3],
     },
     /// Nothing is left for the fluid.

@@ -8,7 +8,7 @@ use finegrain_framework::Real;
 use finegrain_framework::pack::Pack;
 use num_traits::{One, Zero};
 
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, SOUND_SPEED_SQUARED};
 
 /// A pack of sites as the collision sees them, in lattice units.
 ///
@@ -17,13 +17,11 @@ use crate::lattice::Lattice;
 #[derive(Clone, Copy)]
 pub(crate) struct Flow<V, const Q: usize> {
     /// Density less one.
-    pub excess: V,
+    excess: V,
     /// Density.
-    pub density: V,
-    /// Velocity; with half of the force, as of the middle of the collision (Guo, Zheng & Shi 2002,
-    /// eq. 6b).
-    pub velocity: [V; 3],
-    /// `c . u`.
+    density: V,
+    /// `c . u`, with the velocity of the middle of the collision: it has half of the force (Guo, Zheng
+    /// & Shi 2002, eq. 6b).
     velocity_along: [V; Q],
     /// `c . a` of the acceleration by the body force.
     acceleration_along: [V; Q],
@@ -47,7 +45,6 @@ impl<V: Pack, const Q: usize> Flow<V, Q> {
         Self {
             excess,
             density,
-            velocity,
             velocity_along: project::<L, V, Q>(&velocity),
             acceleration_along: project::<L, V, Q>(acceleration),
             squared_speed: product::<L, V, Q>(&velocity, &velocity),
@@ -85,6 +82,83 @@ impl<V: Pack, const Q: usize> Flow<V, Q> {
     pub fn odd_source<L: Lattice<Q>>(&self, q: usize) -> V {
         self.density * self.acceleration_along[q] * V::Scalar::of(3.0 * L::WEIGHTS[q])
     }
+}
+
+/// Density less one, and momentum over density: the velocity before the collision, with nothing of the
+/// force of the step.
+#[inline(always)]
+pub(crate) fn velocity<L: Lattice<Q>, V: Pack, const Q: usize>(f: &[V; Q]) -> (V, [V; 3]) {
+    let (excess, mut velocity) = moments::<L, V, Q>(f);
+    let one = excess.splat_like(V::Scalar::one());
+    let per_density = one / (excess + one);
+    for a in 0..L::DIMS {
+        velocity[a] = velocity[a] * per_density;
+    }
+    (excess, velocity)
+}
+
+/// The velocity after the collision, with the whole force of the step.
+#[inline(always)]
+pub(crate) fn accelerated<L: Lattice<Q>, V: Pack, const Q: usize>(
+    velocity: &[V; 3],
+    acceleration: &[V; 3],
+) -> [V; 3] {
+    let mut after = *velocity;
+    for a in 0..L::DIMS {
+        after[a] = velocity[a] + acceleration[a];
+    }
+    after
+}
+
+/// Stress beyond equilibrium of populations before the collision, `sum (c_a c_b - delta_ab / 3) f -
+/// rho v_a v_b`, for `a` up to `b`. With `v` as from [`velocity`] it is free of the force up to the
+/// square of the acceleration.
+#[inline(always)]
+pub(crate) fn stress<L: Lattice<Q>, V: Pack, const Q: usize>(
+    f: &[V; Q],
+    excess: V,
+    v: &[V; 3],
+) -> [[V; 3]; 3] {
+    let mut stress = [[excess.splat_like(V::Scalar::zero()); 3]; 3];
+    for q in 0..Q {
+        let c = L::VELOCITIES[q];
+        for a in 0..L::DIMS {
+            let diagonal = f64::from(c[a] * c[a]) - SOUND_SPEED_SQUARED;
+            stress[a][a] = stress[a][a] + f[q] * V::Scalar::of(diagonal);
+            for b in a + 1..L::DIMS {
+                match c[a] * c[b] {
+                    1 => stress[a][b] = stress[a][b] + f[q],
+                    -1 => stress[a][b] = stress[a][b] - f[q],
+                    _ => {}
+                }
+            }
+        }
+    }
+    let density = excess + V::Scalar::one();
+    for a in 0..L::DIMS {
+        for b in a..L::DIMS {
+            stress[a][b] = stress[a][b] - density * v[a] * v[b];
+        }
+    }
+    stress
+}
+
+/// The stress without its trace, all of it below the diagonal, too.
+#[inline(always)]
+pub(crate) fn deviator<L: Lattice<Q>, V: Pack, const Q: usize>(
+    mut stress: [[V; 3]; 3],
+) -> [[V; 3]; 3] {
+    let mut trace = stress[0][0];
+    for a in 1..L::DIMS {
+        trace = trace + stress[a][a];
+    }
+    for a in 0..L::DIMS {
+        stress[a][a] = stress[a][a] - trace * V::Scalar::of(1.0 / L::DIMS as f64);
+        for b in 0..a {
+            stress[a][b] = stress[b][a];
+        }
+    }
+    stress
 }
 
 /// Sum of the populations, and their momentum.

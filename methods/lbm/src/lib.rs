@@ -2,7 +2,7 @@
 //!
 //! Nearly incompressible flow by populations that stream from site to site and collide: D2Q9, D3Q19
 //! and D3Q27, `f32` and `f64`, several collisions, body forces, bodies with half-way or interpolated
-//! walls, forces by momentum exchange. Lengths, times and masses are physical; lattice units stay
+//! walls, open ends, forces by momentum exchange. Lengths, times and masses are physical; lattice units stay
 //! inside.
 //!
 //! | file | holds |
@@ -10,9 +10,12 @@
 //! | [`lattice`] | velocities and weights |
 //! | [`mesh`] | sites and time step: the conversion of units |
 //! | `flow.rs` | density, velocity and equilibrium of a site |
+//! | `hermite.rs` | moments of populations, and populations of moments |
+//! | `relaxation.rs` | how fast the stress relaxes, eddies included |
 //! | `collision/` | one collision each, reading like its paper |
 //! | `stream.rs`, `around.rs` | the step: pull, collide, write, for packs of sites |
 //! | `sites.rs`, `link.rs` | what bodies do to rows of sites, and to populations |
+//! | [`opening`] | velocity inlets, pressure and non-reflecting outlets |
 //! | [`start`] | consistent populations at the beginning |
 //! | `derived.rs`, [`measure`] | pressure and velocity; sums over the flow, forces on bodies |
 //! | [`physics`], [`body`] | what a scene models, and how |
@@ -57,6 +60,7 @@ pub mod lattice;
 pub mod measure;
 pub mod mesh;
 pub mod model;
+pub mod opening;
 pub mod physics;
 pub mod start;
 
@@ -64,7 +68,9 @@ mod acceleration;
 mod around;
 mod derived;
 mod flow;
+mod hermite;
 mod link;
+mod relaxation;
 mod sites;
 mod stream;
 
@@ -75,5 +81,6 @@ pub use fields::Fields;
 pub use lattice::{Lattice, LatticeKind};
 pub use mesh::Mesh;
 pub use model::{Compiled, Lbm};
+pub use opening::{Condition, Opening};
 pub use physics::{Fluid, Physics, Scheme};
 pub use start::Start;

@@ -7,13 +7,15 @@ use finegrain_framework::space::Grid;
 use finegrain_framework::{Columns, Model, Plan, Real, RigidPace, Step};
 
 use crate::acceleration::Acceleration;
-use crate::collision::{Bgk, Collide, Collision, Regularised, Trt};
+use crate::collision::{Bgk, Central, Collide, Collision, Cumulant, Mrt, Regularised, Trt};
 use crate::derived::Derived;
 use crate::error::LbmError;
 use crate::fields::Fields;
 use crate::lattice::{D2Q9, D3Q19, D3Q27, Lattice, LatticeKind};
 use crate::mesh::Mesh;
+use crate::opening::Openings;
 use crate::physics::{Fluid, Physics, Scheme};
+use crate::relaxation::Relaxation;
 use crate::sites::{self, Sites};
 use crate::start::Start;
 use crate::stream::Stream;
@@ -100,8 +102,8 @@ impl<T: Real> Lbm<T> {
         start: &Start,
     ) -> Result<Self, LbmError> {
         mesh.check(scheme.lattice)?;
-        physics.check()?;
-        scheme.collision.check()?;
+        physics.check(mesh)?;
+        scheme.check()?;
         fluid.check(mesh)?;
         match scheme.lattice {
             LatticeKind::D2Q9 => Self::on(D2Q9, mesh, fluid, physics, scheme, start),
@@ -118,12 +120,14 @@ impl<T: Real> Lbm<T> {
         scheme: &Scheme,
         start: &Start,
     ) -> Result<Self, LbmError> {
-        let tau = mesh.relaxation_time(fluid.kinematic_viscosity);
         let builder = Builder { mesh, fluid, physics, scheme, start };
         match scheme.collision {
-            Collision::Bgk => builder.build(lattice, Bgk::new(tau)),
-            Collision::Trt { magic } => builder.build(lattice, Trt::new(tau, magic)),
-            Collision::Regularised => builder.build(lattice, Regularised::new(tau)),
+            Collision::Bgk => builder.build(lattice, Bgk),
+            Collision::Trt { magic } => builder.build(lattice, Trt { magic }),
+            Collision::Mrt { magic } => builder.build(lattice, Mrt { magic }),
+            Collision::CentralMoments => builder.build(lattice, Central),
+            Collision::Cumulant => builder.build(lattice, Cumulant),
+            Collision::Regularised => builder.build(lattice, Regularised),
         }
     }
 }
@@ -153,6 +157,10 @@ impl Builder<'_> {
         let solid = sites::solid(mesh, physics)?;
         let sites = Arc::new(Sites::new(mesh, physics, scheme, &solid)?);
         let unit = mesh.unit_acceleration();
+        let relaxation = Relaxation {
+            time: mesh.relaxation_time(fluid.kinematic_viscosity),
+            smagorinsky: scheme.smagorinsky,
+        };
         let acceleration = Acceleration {
             uniform: physics.body_acceleration.map(|a| a / unit),
             field: physics.acceleration_field.clone(),
@@ -161,13 +169,21 @@ impl Builder<'_> {
         for (point, _) in solid.iter().enumerate().filter(|(_, body)| **body == 0) {
             let [nx, ny, _] = mesh.shape;
             let site = [point % nx, point / nx % ny, point / (nx * ny)];
-            let f = start.populations::<L, C, T, Q>(&collision, fluid, &acceleration, site)?;
+            let f = start.populations::<L, C, T, Q>(
+                &collision,
+                &relaxation,
+                fluid,
+                &acceleration,
+                site,
+            )?;
             for (&column, f) in fields.populations.iter().zip(f) {
                 columns.values_mut(column)[point] = f;
             }
         }
         columns.values_mut(fields.solid).copy_from_slice(&solid);
         let velocities = scheme.lattice.velocities();
+        let unit_pressure = fluid.density * mesh.unit_velocity().powi(2);
+        let openings = Openings { all: physics.openings.clone(), mesh: *mesh, unit_pressure };
         let derived = Derived {
             populations: fields.populations.clone(),
             velocities,
@@ -176,15 +192,17 @@ impl Builder<'_> {
             velocity: fields.velocity.clone(),
             acceleration: acceleration.clone(),
             unit_velocity: mesh.unit_velocity(),
-            unit_pressure: fluid.density * mesh.unit_velocity().powi(2),
+            unit_pressure,
         };
         let stream = Stream::<T, L, C, Q> {
             now: std::array::from_fn(|q| fields.populations[q]),
             next: std::array::from_fn(|q| fields.next[q]),
             lattice: PhantomData,
             collision,
+            relaxation,
             acceleration,
             sites: Arc::clone(&sites),
+            openings,
             velocities,
         };
         let mut step = Step::builder().rate(stream);

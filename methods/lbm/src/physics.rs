@@ -8,10 +8,11 @@ use crate::collision::Collision;
 use crate::error::{LbmError, finite, not_negative, positive};
 use crate::lattice::LatticeKind;
 use crate::mesh::Mesh;
+use crate::opening::Opening;
 
 /// Shortest relaxation time, in time steps: closer to 1/2 there is hardly any viscosity left to tell
 /// from the rounding of time step and spacing.
-const SHORTEST: f64 = 0.5001;
+const SHORTEST: f64 = 0.500_001;
 /// Longest relaxation time: beyond, a disturbance crosses many cells before it relaxes.
 const LONGEST: f64 = 100.0;
 /// Largest Mach number: the equilibrium is a series in it.
@@ -55,10 +56,12 @@ pub struct Physics {
     /// Bodies that do not move. Where several overlap, the fluid meets the one that comes first on
     /// its way, or in this list.
     pub bodies: Vec<Body>,
+    /// Ends of the mesh that are open; each plane goes through the last sites at its end.
+    pub openings: Vec<Opening>,
 }
 
 impl Physics {
-    pub(crate) fn check(&self) -> Result<(), LbmError> {
+    pub(crate) fn check(&self, mesh: &Mesh) -> Result<(), LbmError> {
         for acceleration in self.body_acceleration {
             finite("body_acceleration", acceleration)?;
         }
@@ -68,6 +71,12 @@ impl Physics {
         }
         for (number, body) in self.bodies.iter().enumerate() {
             body.check(number)?;
+        }
+        if self.openings.len() > 6 {
+            return Err(LbmError::Openings(self.openings.len()));
+        }
+        for opening in &self.openings {
+            opening.check(mesh)?;
         }
         Ok(())
     }
@@ -83,11 +92,20 @@ pub struct Scheme {
     pub collision: Collision,
     /// How they are turned back at bodies.
     pub wall: Wall,
+    /// Smagorinsky's constant (1963) of eddies that the mesh does not hold, which have a viscosity of
+    /// `(C dx)^2 |S|`; none if `None`. Between 0.1 and 0.2 usually.
+    pub smagorinsky: Option<f64>,
 }
 
 impl Scheme {
-    /// The default collision and walls on a lattice.
+    /// The default collision and walls on a lattice, without eddies.
     pub fn on(lattice: LatticeKind) -> Self {
-        Self { lattice, collision: Collision::default(), wall: Wall::default() }
+        let (collision, wall) = (Collision::default(), Wall::default());
+        Self { lattice, collision, wall, smagorinsky: None }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), LbmError> {
+        self.collision.check()?;
+        self.smagorinsky.map_or(Ok(()), |constant| positive("smagorinsky", constant))
     }
 }

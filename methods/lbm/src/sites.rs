@@ -9,6 +9,7 @@ use crate::error::LbmError;
 use crate::lattice::SOUND_SPEED_SQUARED;
 use crate::link::{Cut, Link};
 use crate::mesh::Mesh;
+use crate::opening::Opening;
 use crate::physics::{Physics, Scheme};
 
 /// Surfaces so close on a link, as a fraction of it, are met at once: in a corner rounding must not
@@ -40,7 +41,16 @@ pub(crate) struct Run {
 pub(crate) struct Single {
     pub x: u32,
     first_link: u32,
-    links: u32,
+    links: u8,
+    /// Number of its opening from 1, or 0.
+    opening: u8,
+}
+
+impl Single {
+    /// Number of the opening on the plane of which it lies.
+    pub fn opening(&self) -> Option<usize> {
+        usize::from(self.opening).checked_sub(1)
+    }
 }
 
 impl<T> Sites<T> {
@@ -57,7 +67,7 @@ impl<T> Sites<T> {
     /// The links of a single site.
     pub fn links(&self, single: &Single) -> &[Link<T>] {
         let first = single.first_link as usize;
-        &self.links[first..first + single.links as usize]
+        &self.links[first..first + usize::from(single.links)]
     }
 }
 
@@ -128,16 +138,18 @@ impl<T: Real> Sites<T> {
                         sites.close(&mut run);
                         continue;
                     }
+                    let opening = survey.opening([x, y, z])?;
                     survey.cuts([x, y, z], &mut cuts)?;
                     let at_end = x == 0 || x + 1 == mesh.shape[0];
-                    if cuts.is_empty() && !at_end {
+                    if cuts.is_empty() && opening == 0 && !at_end {
                         if run.is_empty() {
                             run = x..x;
                         }
                         run.end = x + 1;
                     } else {
                         sites.close(&mut run);
-                        sites.single(x, cuts.iter().map(|cut| Link::new(cut, scheme.wall)));
+                        let links = cuts.iter().map(|cut| Link::new(cut, scheme.wall));
+                        sites.single(x, links, opening);
                     }
                 }
                 sites.close(&mut run);
@@ -154,17 +166,17 @@ impl<T: Real> Sites<T> {
             self.runs.push(Run { start: run.start as u32, end: run.end as u32 });
         } else {
             for x in run.clone() {
-                self.single(x, []);
+                self.single(x, [], 0);
             }
         }
         *run = 0..0;
     }
 
-    fn single(&mut self, x: usize, links: impl IntoIterator<Item = Link<T>>) {
-        let first_link = self.links.len() as u32;
+    fn single(&mut self, x: usize, links: impl IntoIterator<Item = Link<T>>, opening: u8) {
+        let first_link = self.links.len();
         self.links.extend(links);
-        let links = self.links.len() as u32 - first_link;
-        self.singles.push(Single { x: x as u32, first_link, links });
+        let links = (self.links.len() - first_link) as u8;
+        self.singles.push(Single { x: x as u32, first_link: first_link as u32, links, opening });
     }
 }
 
@@ -185,7 +197,8 @@ impl Survey<'_> {
         for (q, c) in self.scheme.lattice.velocities().iter().enumerate().skip(1) {
             let along = |sign: isize| [0, 1, 2].map(|a| here[a] + sign * c[a] as isize);
             let from = along(-1);
-            if self.is_fluid(from) {
+            let is_open = |o: &Opening| o.is_before(self.mesh, from);
+            if self.is_fluid(from) || self.physics.openings.iter().any(is_open) {
                 continue;
             }
             let (body, fraction) = self.surface(here, from)?;
@@ -202,6 +215,28 @@ impl Survey<'_> {
             });
         }
         Ok(())
+    }
+
+    /// Number, from 1, of the opening on the plane of which a site of the fluid lies; 0 if none.
+    fn opening(&self, site: [usize; 3]) -> Result<u8, LbmError> {
+        let mut found = 0;
+        let here = site.map(|i| i as isize);
+        for (number, opening) in (1..).zip(&self.physics.openings) {
+            if !opening.has(self.mesh, site) {
+                continue;
+            }
+            let position = self.mesh.position(here);
+            if found > 0 {
+                return Err(LbmError::OpeningsMeet { position });
+            }
+            found = number;
+            let mut inside = here;
+            inside[opening.axis()] += opening.inward() as isize;
+            if !self.is_fluid(inside) {
+                return Err(LbmError::OpeningBlocked { position });
+            }
+        }
+        Ok(found)
     }
 
     fn is_fluid(&self, site: [isize; 3]) -> bool {

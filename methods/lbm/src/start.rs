@@ -9,6 +9,7 @@ use crate::collision::Collide;
 use crate::error::LbmError;
 use crate::lattice::Lattice;
 use crate::physics::Fluid;
+use crate::relaxation::Relaxation;
 
 /// A function of the position, m.
 type Given<R> = Box<dyn Fn([f64; 3]) -> R>;
@@ -41,6 +42,7 @@ impl Start {
     pub(crate) fn populations<L: Lattice<Q>, C: Collide<T>, T: Real, const Q: usize>(
         &self,
         collision: &C,
+        relaxation: &Relaxation,
         fluid: &Fluid,
         acceleration: &Acceleration,
         site: [usize; 3],
@@ -69,7 +71,11 @@ impl Start {
             let (ahead, behind) = (shifted(0.5), shifted(-0.5));
             gradient[b] = [0, 1, 2].map(|a| ahead[a] - behind[a]);
         }
-        let tau = mesh.relaxation_time(fluid.kinematic_viscosity);
+        let mut strain = [[0.0; 3]; 3];
+        for i in 0..L::DIMS {
+            strain[i] = [0, 1, 2].map(|j| 0.5 * (gradient[i][j] + gradient[j][i]));
+        }
+        let tau = relaxation.time_at(&strain);
         let mut f = [T::zero(); Q];
         for q in 0..Q {
             let c = L::VELOCITIES[q].map(f64::from);
@@ -80,16 +86,17 @@ impl Start {
             for i in 0..L::DIMS {
                 for j in 0..L::DIMS {
                     let tensor = c[i] * c[j] - if i == j { 1.0 / 3.0 } else { 0.0 };
-                    let strain = 0.5 * (gradient[i][j] + gradient[j][i]);
                     let forcing = 0.5 * (u[i] * a[j] + u[j] * a[i]);
-                    stress += tensor * density * (-2.0 / 3.0 * tau * strain - forcing);
+                    stress += tensor * density * (-2.0 / 3.0 * tau * strain[i][j] - forcing);
                 }
             }
             let beyond = -1.5 * density * along(a) + 4.5 * stress;
             f[q] = T::of(L::WEIGHTS[q] * (excess + density * quadratic + beyond));
         }
         let pack = |x: T| T::Pack::<Scalar>::splat(Scalar, x);
-        let packs = collision.collide::<L, _, Q>(f.map(pack), a.map(|a| pack(T::of(a))));
+        let packs = f.map(pack);
+        let omega = relaxation.rate::<L, _, Q>(&packs);
+        let packs = collision.collide::<L, _, Q>(packs, a.map(|a| pack(T::of(a))), omega);
         for q in 0..Q {
             packs[q].store(std::slice::from_mut(&mut f[q]));
         }

@@ -19,6 +19,8 @@ use crate::acceleration::Acceleration;
 use crate::around::{Around, wrap};
 use crate::collision::Collide;
 use crate::lattice::Lattice;
+use crate::opening::{Edge, Openings};
+use crate::relaxation::Relaxation;
 use crate::sites::{Run, Single, Sites};
 
 /// Streams and collides.
@@ -27,8 +29,10 @@ pub(crate) struct Stream<T, L, C, const Q: usize> {
     pub next: [Rate<T>; Q],
     pub lattice: PhantomData<L>,
     pub collision: C,
+    pub relaxation: Relaxation,
     pub acceleration: Acceleration,
     pub sites: Arc<Sites<T>>,
+    pub openings: Openings,
     /// The velocities as a slice.
     pub velocities: &'static [[i32; 3]],
 }
@@ -89,7 +93,10 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
                 self.run_of_sites::<V>(simd, run, &from, &mut to, &scratch.acceleration);
             }
             for group in singles.chunks(MOST_LANES) {
-                self.single_sites::<V>(simd, group, &around, &from, &mut to, &scratch.acceleration);
+                let mut gathered =
+                    Gathered::new(group, &self.sites, &around, &from, &scratch.acceleration);
+                self.complete(group, &around, &mut gathered, (j, k), time);
+                self.single_sites::<V>(simd, group, &mut gathered, &mut to);
             }
         }
     }
@@ -105,11 +112,12 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
         acceleration: &[Vec<T>; 3],
     ) {
         let (start, end) = (run.start as usize, run.end as usize);
-        self.packs::<V>(simd, [start, end], from, to, acceleration);
         // The last pack overlaps the one before: the same numbers are computed from what has not
-        // been touched.
-        if !(end - start).is_multiple_of(V::LANES) {
-            self.packs::<V>(simd, [end - V::LANES, end], from, to, acceleration);
+        // been touched. A loop, so that the collision is compiled once for both.
+        let parts = [[start, end], [end - V::LANES, end]];
+        let is_whole = (end - start).is_multiple_of(V::LANES);
+        for &part in &parts[..if is_whole { 1 } else { 2 }] {
+            self.packs::<V>(simd, part, from, to, acceleration);
         }
     }
 
@@ -148,39 +156,52 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
             for a in 0..L::DIMS {
                 force[a] = V::of(simd, forces[a][i]);
             }
-            let after = self.collision.collide::<L, V, Q>(f, force);
+            let omega = self.relaxation.rate::<L, V, Q>(&f);
+            let after = self.collision.collide::<L, V, Q>(f, force, omega);
             for q in 0..Q {
                 targets[q][i] = after[q].vector();
             }
         }
     }
 
-    /// At most [`MOST_LANES`] single sites.
+    /// Replaces the populations of those among single sites that lie on the plane of an opening.
+    fn complete(
+        &self,
+        singles: &[Single],
+        around: &Around<'_, '_, T>,
+        gathered: &mut Gathered<T, Q>,
+        (j, k): (usize, usize),
+        time: f64,
+    ) {
+        for (place, single) in singles.iter().enumerate() {
+            let Some(number) = single.opening() else { continue };
+            let x = single.x as usize;
+            let acceleration = gathered.acceleration.map(|a| a[place].as_f64());
+            let edge = Edge { site: [x, j, k], time, acceleration };
+            let mut f = gathered.f.map(|f| f[place]);
+            let opening = &self.openings.all[number];
+            let earlier = |n: i32| {
+                let mut to = [0; 3];
+                to[opening.axis()] = n * opening.inward();
+                std::array::from_fn(|q| around.at(q, x, to))
+            };
+            self.openings.complete::<L, T, Q>(number, &mut f, &edge, earlier);
+            for q in 0..Q {
+                gathered.f[q][place] = f[q];
+            }
+        }
+    }
+
+    /// Collides at most [`MOST_LANES`] single sites.
     #[inline(always)]
     fn single_sites<V: Pack<Scalar = T>>(
         &self,
         simd: V::Simd,
         singles: &[Single],
-        around: &Around<'_, '_, T>,
-        from: &[&[T]; Q],
+        gathered: &mut Gathered<T, Q>,
         to: &mut [&mut [T]; Q],
-        acceleration: &[Vec<T>; 3],
     ) {
-        let mut f: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
-        let mut forces: [Group<T>; 3] = [[T::zero(); MOST_LANES]; 3];
-        for (place, single) in singles.iter().enumerate() {
-            let x = single.x as usize;
-            for q in 0..Q {
-                let shift = L::VELOCITIES[q][0];
-                f[q][place] = from[q][wrap(x as i32 - shift, from[q].len())];
-            }
-            for link in self.sites.links(single) {
-                f[usize::from(link.q)][place] = around.returned(link, x);
-            }
-            for a in 0..L::DIMS {
-                forces[a][place] = acceleration[a][x];
-            }
-        }
+        let Gathered { f, acceleration } = gathered;
         for first in (0..singles.len()).step_by(V::LANES) {
             let mut pack = [V::splat(simd, T::zero()); Q];
             for q in 0..Q {
@@ -188,9 +209,10 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
             }
             let mut force = [V::splat(simd, T::zero()); 3];
             for a in 0..L::DIMS {
-                force[a] = V::load(simd, &forces[a][first..]);
+                force[a] = V::load(simd, &acceleration[a][first..]);
             }
-            let after = self.collision.collide::<L, V, Q>(pack, force);
+            let omega = self.relaxation.rate::<L, V, Q>(&pack);
+            let after = self.collision.collide::<L, V, Q>(pack, force, omega);
             for q in 0..Q {
                 after[q].store(&mut f[q][first..]);
             }
@@ -200,6 +222,40 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
                 to[q][single.x as usize] = f[q][place];
             }
         }
+    }
+}
+
+/// What arrives at single sites, and accelerates them.
+struct Gathered<T, const Q: usize> {
+    f: [Group<T>; Q],
+    acceleration: [Group<T>; 3],
+}
+
+impl<T: Real, const Q: usize> Gathered<T, Q> {
+    /// Of at most [`MOST_LANES`] sites, with what comes out of bodies in its place.
+    #[inline(always)]
+    fn new(
+        singles: &[Single],
+        sites: &Sites<T>,
+        around: &Around<'_, '_, T>,
+        from: &[&[T]; Q],
+        accelerations: &[Vec<T>; 3],
+    ) -> Self {
+        let mut f: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
+        let mut acceleration: [Group<T>; 3] = [[T::zero(); MOST_LANES]; 3];
+        for (place, single) in singles.iter().enumerate() {
+            let x = single.x as usize;
+            for q in 0..Q {
+                f[q][place] = from[q][wrap(x as i32 - around.velocity(q)[0], from[q].len())];
+            }
+            for link in sites.links(single) {
+                f[usize::from(link.q)][place] = around.returned(link, x);
+            }
+            for a in 0..3 {
+                acceleration[a][place] = accelerations[a][x];
+            }
+        }
+        Self { f, acceleration }
     }
 }
 

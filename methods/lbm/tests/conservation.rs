@@ -28,7 +28,7 @@ fn excess_mass(
     physics: &Physics,
     mesh: &Mesh,
 ) -> [f64; 2] {
-    let scheme = Scheme { lattice, collision, wall: Wall::HalfWay };
+    let scheme = Scheme { collision, wall: Wall::HalfWay, ..Scheme::on(lattice) };
     let start = Start {
         velocity: Box::new(|[x, y, _]| [0.2 * (TAU * y).sin(), 0.1 * (TAU * x / 1.2).cos(), 0.0]),
         pressure: Box::new(|[x, y, _]| 0.3 * (TAU * (x / 1.2 + y)).sin()),
@@ -43,8 +43,14 @@ fn excess_mass(
     })
 }
 
-const COLLISIONS: [Collision; 3] =
-    [Collision::Bgk, Collision::Trt { magic: 0.25 }, Collision::Regularised];
+const COLLISIONS: [Collision; 6] = [
+    Collision::Bgk,
+    Collision::Trt { magic: 0.25 },
+    Collision::Mrt { magic: 0.25 },
+    Collision::CentralMoments,
+    Collision::Cumulant,
+    Collision::Regularised,
+];
 
 #[test]
 fn mass_in_a_periodic_box() {

@@ -11,6 +11,7 @@ use finegrain_lbm::{Body, Compiled, Fluid, LatticeKind, Mesh, Physics, Start, me
 use super::{Final, Flow, LbmScene};
 use crate::scene::cavity::{self, Cavity, Extrema};
 use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::peak;
 use crate::scene::{Precision, Report, SceneError};
 
 /// All parameters.
@@ -106,40 +107,13 @@ impl<T: Compiled> Flow<T> for CavityFlow {
         if !is_steady {
             report.notes.push("not steady: no errors are given".to_owned());
         }
-        let least = |values: &[f64]| -largest(&values.iter().map(|v| -v).collect::<Vec<_>>());
-        let found = Extrema { u_min: least(&u), v_max: largest(&v), v_min: least(&v) };
+        let [(_, u_min), (_, v_max), (_, v_min)] =
+            [peak::least(&u), peak::largest(&v), peak::least(&v)];
+        let found = Extrema { u_min, v_max, v_min };
         self.scene.judge(report, &found, is_steady);
     }
 
     fn title(&self) -> String {
         self.scene.title()
-    }
-}
-
-/// The top of the parabola through the largest value and its neighbours.
-fn largest(values: &[f64]) -> f64 {
-    let mut at = 0;
-    for (i, value) in values.iter().enumerate() {
-        if *value > values[at] {
-            at = i;
-        }
-    }
-    if at == 0 || at + 1 == values.len() {
-        return values[at];
-    }
-    let [before, here, after] = [values[at - 1], values[at], values[at + 1]];
-    let (slope, curvature) = (0.5 * (after - before), before - 2.0 * here + after);
-    if curvature < 0.0 { here - 0.5 * slope * slope / curvature } else { here }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_top_of_a_parabola_is_found_between_points() {
-        let values: Vec<f64> = (0..9).map(|i| 3.0 - (f64::from(i) - 4.3).powi(2)).collect();
-        assert!((largest(&values) - 3.0).abs() < 1e-14);
-        assert_eq!(largest(&[2.0, 1.0, 0.0]), 2.0);
     }
 }

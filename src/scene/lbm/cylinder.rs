@@ -15,7 +15,7 @@ use crate::scene::{Precision, Report, SceneError};
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::LATTICE, super::WALL, super::RELAXATION_TIME];
-    [&cylinder::PARAMETERS[..], &super::COLLISION, &own].concat()
+    [&cylinder::PARAMETERS[..], &super::collision_at_walls(), &own].concat()
 }
 
 prepare_with!(build);
@@ -118,6 +118,13 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
         let [force, ..] = measure::force_on_body(&mut simulation.whole(), &lbm.parts, 0);
         let driving = self.scene.body_acceleration * totals.mass;
         cylinder::judge_momentum(report, force, driving, is_steady);
+        if is_steady {
+            let middle = 0.5 * SIDE;
+            let stations = self.scene.reference_profiles().iter();
+            let points = stations.map(|station| [middle + station.x, middle + station.y]);
+            let found = points.map(|point| lbm.interpolated_velocity(simulation, point));
+            self.scene.judge_profiles(report, found);
+        }
         report.result("relative_excess_mass", totals.excess_mass / totals.mass, None);
     }
 

@@ -24,9 +24,13 @@ macro_rules! prepare_with {
 
 pub mod cavity;
 pub mod channel;
+pub mod channel_cylinder;
 pub mod cylinder;
+pub mod double_shear_layer;
 pub mod shear_wave;
+pub mod sphere_array;
 pub mod taylor_green;
+pub mod womersley;
 
 use finegrain_framework::Simulation;
 use finegrain_framework::run::{Dump, Run, Summary};
@@ -47,16 +51,35 @@ fn refused(precision: Precision) -> SceneError {
 }
 
 /// Parameters of the collision, which all scenes share.
-const COLLISION: [Parameter; 2] = [
-    Parameter::choice("collision", &["trt", "regularised", "bgk"], "how populations relax"),
+const COLLISION: [Parameter; 3] = [
+    Parameter::choice(
+        "collision",
+        &["cumulant", "central-moments", "regularised", "trt", "mrt", "bgk"],
+        "how populations relax",
+    ),
     Parameter::number(
         "magic",
         3.0 / 16.0,
         [1e-3, 10.0],
         "",
-        "magic parameter, with trt (Ginzburg et al. 2008)",
+        "magic parameter, with trt and mrt (Ginzburg et al. 2008)",
+    ),
+    Parameter::number(
+        "smagorinsky",
+        0.0,
+        [0.0, 1.0],
+        "",
+        "constant of the viscosity of eddies (Smagorinsky 1963; Hou et al. 1996); 0: none",
     ),
 ];
+
+/// The same for slow flow along walls, which two relaxation times keep where they are.
+fn collision_at_walls() -> [Parameter; 3] {
+    COLLISION.map(|parameter| match parameter.name {
+        "collision" => parameter.with_default_choice("trt"),
+        _ => parameter,
+    })
+}
 
 /// For scenes with bodies.
 const WALL: Parameter = Parameter::choice(
@@ -93,13 +116,17 @@ fn scheme(parameters: &Parameters, lattice: LatticeKind, has_walls: bool) -> Sch
         lattice,
         collision: match parameters.choice("collision") {
             "bgk" => Collision::Bgk,
+            "central-moments" => Collision::CentralMoments,
             "regularised" => Collision::Regularised,
-            _ => Collision::Trt { magic: parameters.number("magic") },
+            "trt" => Collision::Trt { magic: parameters.number("magic") },
+            "mrt" => Collision::Mrt { magic: parameters.number("magic") },
+            _ => Collision::Cumulant,
         },
         wall: match has_walls && parameters.choice("wall") == "half-way" {
             true => Wall::HalfWay,
             false => Wall::Interpolated,
         },
+        smagorinsky: Some(parameters.number("smagorinsky")).filter(|constant| *constant > 0.0),
     }
 }
 
@@ -151,6 +178,28 @@ impl<T: Compiled> Final<T> {
         velocity
     }
 
+    /// Velocity along x and y at a point of the lowest plane, m/s, by cubics through four sites in each
+    /// direction, around periodic ends; sites in bodies count as at rest.
+    fn interpolated_velocity(&self, simulation: &Simulation<Grid>, point: [f64; 2]) -> [f64; 2] {
+        let first = self.position([0; 3]);
+        let place = [0, 1].map(|a| (point[a] - first[a]) / self.mesh.spacing);
+        let lowest = place.map(|p| p.floor() as isize - 1);
+        let [along_x, along_y] = place.map(|p| cubic(p - p.floor()));
+        let mut velocity = [0.0; 2];
+        for (dy, wy) in (0..).zip(along_y) {
+            for (dx, wx) in (0..).zip(along_x) {
+                let [nx, ny, _] = self.mesh.shape.map(|n| n as isize);
+                let x = (lowest[0] + dx).rem_euclid(nx) as usize;
+                let y = (lowest[1] + dy).rem_euclid(ny) as usize;
+                let found = self.velocity(simulation, [x, y, 0]);
+                for a in 0..2 {
+                    velocity[a] += wx * wy * found[a];
+                }
+            }
+        }
+        velocity
+    }
+
     /// Position of a site, m.
     fn position(&self, site: [usize; 3]) -> [f64; 3] {
         self.mesh.position(site.map(|i| i as isize))
@@ -161,6 +210,16 @@ impl<T: Compiled> Final<T> {
         let [nx, ny, nz] = self.mesh.shape;
         (0..nx * ny * nz).map(move |i| [i % nx, i / nx % ny, i / (nx * ny)])
     }
+}
+
+/// Lagrange's weights of sites at -1, 0, 1, 2 for a place between 0 and 1.
+fn cubic(x: f64) -> [f64; 4] {
+    [
+        -x * (x - 1.0) * (x - 2.0) / 6.0,
+        (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0,
+        -(x + 1.0) * x * (x - 2.0) / 2.0,
+        (x + 1.0) * x * (x - 1.0) / 6.0,
+    ]
 }
 
 /// A scene with its model.
@@ -194,7 +253,7 @@ impl<T: Compiled, F: Flow<T>> Prepared for LbmScene<T, F> {
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
         let Self { lbm, fluid, flow, description } = *self;
         let Lbm { model, fields, mesh, parts } = lbm;
-        let settings = orders.settings();
+        let (settings, trace) = (orders.settings(), orders.trace.clone());
         let workers = settings.workers;
         let simulation = Simulation::new(model, settings)
             .map_err(|cause| SceneError::Workers { workers, cause })?;
@@ -209,6 +268,7 @@ impl<T: Compiled, F: Flow<T>> Prepared for LbmScene<T, F> {
         let summary = run.run()?;
         let mut report = Report::new(&summary, mesh.sites());
         let simulation = run.simulation_mut();
+        report.trace(simulation, trace)?;
         let relaxation_time = mesh.relaxation_time(fluid.kinematic_viscosity);
         report.results.insert("relaxation_time", relaxation_time);
         let speed = measure::largest_speed(&mut simulation.whole(), &parts);

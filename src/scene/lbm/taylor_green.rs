@@ -1,8 +1,4 @@
 //! Taylor-Green vortices on a lattice.
-//!
-//! By default the collision is regularised: at relaxation times near 1/2, two relaxation times with the
-//! magic parameter that walls want (3/16) relax odd parts slowly, and the vortices are four times
-//! less accurate.
 
 use finegrain_framework::Simulation;
 use finegrain_framework::run::{Every, Run, Summary};
@@ -19,9 +15,7 @@ use crate::scene::{Precision, Report, SceneError};
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::LATTICE, super::MACH.with_default(0.05)];
-    let [collision, magic] = super::COLLISION;
-    let collision = [collision.with_default_choice("regularised"), magic];
-    [&taylor_green::PARAMETERS[..], &collision, &own].concat()
+    [&taylor_green::PARAMETERS[..], &super::COLLISION, &own].concat()
 }
 
 prepare_with!(build);
@@ -96,6 +90,12 @@ impl<T: Compiled> Flow<T> for Vortices {
             (lbm.position(site), [u, v])
         });
         self.scene.judge(report, time, [first, last], velocities);
+        if self.scene.dims == 3 {
+            let history = &summary.histories[0];
+            let energy: Vec<f64> =
+                history.column("kinetic_energy").map(Iterator::collect).unwrap_or_default();
+            self.scene.judge_dissipation(report, history.times(), &energy);
+        }
     }
 
     fn title(&self) -> String {

@@ -21,6 +21,7 @@ macro_rules! prepare_with {
 
 pub mod cavity;
 pub mod channel;
+pub mod channel_cylinder;
 pub mod cylinder;
 pub mod dam_break;
 pub mod drop;
@@ -290,7 +291,7 @@ impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
         let Self { sph, flow, description } = *self;
         let Sph { model, fields, particle_mass } = sph;
         let points = model.columns.points();
-        let settings = orders.settings();
+        let (settings, trace) = (orders.settings(), orders.trace.clone());
         let workers = settings.workers;
         let simulation = Simulation::new(model, settings)
             .map_err(|cause| SceneError::Workers { workers, cause })?;
@@ -313,6 +314,7 @@ impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
         let summary = run.run()?;
         let mut report = Report::new(&summary, points);
         let simulation = run.simulation_mut();
+        report.trace(simulation, trace)?;
         flow.judge(&mut report, &summary, simulation, &fields, particle_mass);
         // Over the spacing: a sign of clumping.
         let closest = measure::closest_pair(&mut simulation.whole()) / flow.spacing();

@@ -9,26 +9,18 @@ use crate::lattice::Lattice;
 
 /// `f* = f - omega (f - f_eq) + (1 - omega / 2) S`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bgk<T> {
-    omega: T,
-}
+pub(crate) struct Bgk;
 
-impl<T: Real> Bgk<T> {
-    /// With this relaxation time, in time steps.
-    pub fn new(relaxation_time: f64) -> Self {
-        Self { omega: T::of(1.0 / relaxation_time) }
-    }
-}
-
-impl<T: Real> Collide<T> for Bgk<T> {
+impl<T: Real> Collide<T> for Bgk {
     #[inline(always)]
     fn collide<L: Lattice<Q>, V: Pack<Scalar = T>, const Q: usize>(
         &self,
         f: [V; Q],
         acceleration: [V; 3],
+        omega: V,
     ) -> [V; Q] {
         let flow = Flow::new::<L>(&f, &acceleration);
-        let (omega, source) = (self.omega, T::one() - T::of(0.5) * self.omega);
+        let source = omega * T::of(-0.5) + T::one();
         let mut after = f;
         after[0] = f[0]
             + (flow.even_equilibrium::<L>(0) - f[0]) * omega

@@ -11,40 +11,41 @@ use crate::lattice::Lattice;
 /// the relaxation time of the viscosity, the odd one such that
 /// `(tau_even - 1/2) (tau_odd - 1/2)` is the magic parameter.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trt<T> {
-    even: T,
-    odd: T,
+pub(crate) struct Trt {
+    /// The magic parameter.
+    pub magic: f64,
 }
 
-impl<T: Real> Trt<T> {
-    /// With this relaxation time of the viscosity, in time steps, and magic parameter.
-    pub fn new(relaxation_time: f64, magic: f64) -> Self {
-        let odd_time = 0.5 + magic / (relaxation_time - 0.5);
-        Self { even: T::of(1.0 / relaxation_time), odd: T::of(1.0 / odd_time) }
-    }
+/// Relaxation rate of odd moments: with `tau = 1 / omega`, that of the time `1/2 + magic / (tau - 1/2)`.
+#[inline(always)]
+pub(crate) fn odd_rate<V: Pack>(omega: V, magic: f64) -> V {
+    let viscous = -omega + V::Scalar::of(2.0);
+    viscous * V::Scalar::of(2.0) / (viscous + omega * V::Scalar::of(4.0 * magic))
 }
 
-impl<T: Real> Collide<T> for Trt<T> {
+impl<T: Real> Collide<T> for Trt {
     #[inline(always)]
     fn collide<L: Lattice<Q>, V: Pack<Scalar = T>, const Q: usize>(
         &self,
         f: [V; Q],
         acceleration: [V; 3],
+        omega: V,
     ) -> [V; Q] {
         let flow = Flow::new::<L>(&f, &acceleration);
         let half = T::of(0.5);
-        let even_source = T::one() - half * self.even;
-        let odd_source = T::one() - half * self.odd;
+        let (even_rate, odd_rate) = (omega, odd_rate(omega, self.magic));
+        let even_source = -(even_rate * half) + T::one();
+        let odd_source = -(odd_rate * half) + T::one();
         let mut after = f;
         after[0] = f[0]
-            + (flow.even_equilibrium::<L>(0) - f[0]) * self.even
+            + (flow.even_equilibrium::<L>(0) - f[0]) * even_rate
             + flow.even_source::<L>(0) * even_source;
         for n in 0..Q / 2 {
             let (q, back) = (2 * n + 1, 2 * n + 2);
             let (even, odd) = ((f[q] + f[back]) * half, (f[q] - f[back]) * half);
-            let even_change = (flow.even_equilibrium::<L>(q) - even) * self.even
+            let even_change = (flow.even_equilibrium::<L>(q) - even) * even_rate
                 + flow.even_source::<L>(q) * even_source;
-            let odd_change = (flow.odd_equilibrium::<L>(q) - odd) * self.odd
+            let odd_change = (flow.odd_equilibrium::<L>(q) - odd) * odd_rate
                 + flow.odd_source::<L>(q) * odd_source;
             after[q] = f[q] + (even_change + odd_change);
             after[back] = f[back] + (even_change - odd_change);

@@ -1,48 +1,13 @@
-//! The hard cases, and the variants that are tried on them.
+//! Hard cases for smoothed particle hydrodynamics.
 
-/// A scene run for long or at its limits.
-#[derive(Clone, Copy, Debug)]
-pub struct HardCase {
-    /// Its name.
-    pub name: &'static str,
-    /// The scene.
-    pub scene: &'static str,
-    /// What is set in all variants.
-    pub settings: &'static [(&'static str, &'static str)],
-    /// How long, s.
-    pub until: f64,
-    /// What is tried.
-    pub variants: &'static [Variant],
-    /// What must hold of the results for them to be right.
-    pub signs: &'static [Sign],
-}
+use super::{HardCase, Sign, Variant, variant};
 
-/// A choice of terms, kernel, integrator.
-#[derive(Clone, Copy, Debug)]
-pub struct Variant {
-    /// Its name.
-    pub name: &'static str,
-    /// What is set.
-    pub settings: &'static [(&'static str, &'static str)],
-}
-
-/// A result that betrays a run that went wrong without a failure.
-#[derive(Clone, Copy, Debug)]
-pub struct Sign {
-    /// Name of the result.
-    pub result: &'static str,
-    /// Smallest value of a run that went well.
-    pub least: f64,
-    /// Largest value of a run that went well.
-    pub most: f64,
-    /// What it means if the value is another.
-    pub symptom: &'static str,
-}
-
-/// All hard cases (`finegrain report stability`).
-pub const HARD_CASES: [HardCase; 7] = [
+/// Vortices, free surfaces, walls and shocks.
+pub const CASES: [HardCase; 7] = [
     HardCase {
         name: "taylor-green, Re 1000",
+        method: "sph",
+        time_step: Some("courant"),
         scene: "taylor-green",
         settings: &[("reynolds", "1000"), ("disturbance", "0")],
         until: 5.0,
@@ -51,6 +16,8 @@ pub const HARD_CASES: [HardCase; 7] = [
     },
     HardCase {
         name: "taylor-green, Re 10000",
+        method: "sph",
+        time_step: Some("courant"),
         scene: "taylor-green",
         settings: &[("reynolds", "10000"), ("disturbance", "0")],
         until: 5.0,
@@ -59,6 +26,8 @@ pub const HARD_CASES: [HardCase; 7] = [
     },
     HardCase {
         name: "rotating patch, omega t = 4",
+        method: "sph",
+        time_step: Some("courant"),
         scene: "rotating-patch",
         settings: &[],
         until: 4.0,
@@ -72,6 +41,8 @@ pub const HARD_CASES: [HardCase; 7] = [
     },
     HardCase {
         name: "dam break, far wall and back",
+        method: "sph",
+        time_step: Some("courant"),
         scene: "dam-break",
         settings: &[("resolution", "20")],
         until: 5.0,
@@ -80,6 +51,8 @@ pub const HARD_CASES: [HardCase; 7] = [
     },
     HardCase {
         name: "hydrostatic, 200 sqrt(H/g)",
+        method: "sph",
+        time_step: Some("courant"),
         scene: "hydrostatic-tank",
         settings: &[("resolution", "20")],
         // Depth 1 m.
@@ -95,6 +68,8 @@ pub const HARD_CASES: [HardCase; 7] = [
     HardCase {
         // An array, not a channel: each cylinder stands in the wake of the one before.
         name: "cylinders, inertial",
+        method: "sph",
+        time_step: Some("courant"),
         scene: "cylinder",
         settings: &[("viscosity", "1e-6"), ("body_acceleration", "2e-5"), ("resolution", "25")],
         // Twice the time in which the flow would be at its speed without inertia.
@@ -107,6 +82,8 @@ pub const HARD_CASES: [HardCase; 7] = [
     },
     HardCase {
         name: "noh, 2-D",
+        method: "sph",
+        time_step: Some("courant"),
         scene: "noh",
         settings: &[("dim", "2"), ("resolution", "60")],
         until: 0.6,
@@ -181,26 +158,3 @@ const FREE_SURFACE: &[Variant] = &[
     variant("symplectic-euler", &[("integrator", "symplectic-euler")]),
     variant("rk4", &[("integrator", "rk4")]),
 ];
-
-const fn variant(name: &'static str, settings: &'static [(&'static str, &'static str)]) -> Variant {
-    Variant { name, settings }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::Scene;
-
-    #[test]
-    fn every_variant_sets_what_its_scene_has() {
-        for case in HARD_CASES {
-            let scene = Scene::find(case.scene).unwrap();
-            for variant in case.variants {
-                let settings = case.settings.iter().chain(variant.settings).copied();
-                if let Err(why) = scene.set(settings) {
-                    panic!("{}, {}: {why}", case.name, variant.name);
-                }
-            }
-        }
-    }
-}
