@@ -61,14 +61,28 @@ impl Loads {
         Self { drag, lift, pressure_difference }
     }
 
-    /// Whether drag and lift have changed by less than a part in 10^5 of the drag in the time that the
-    /// mean flow needs for ten diameters.
-    pub fn are_steady(&self) -> bool {
+    /// The means over the time that the mean flow needs for so many `diameters`, ending at each sample.
+    #[must_use]
+    pub fn averaged(&self, diameters: f64) -> Self {
+        let count = ((diameters * SAMPLES as f64) as usize).max(1);
+        let means = |values: &[f64]| {
+            values.windows(count).map(|late| late.iter().sum::<f64>() / count as f64).collect()
+        };
+        Self {
+            drag: means(&self.drag),
+            lift: means(&self.lift),
+            pressure_difference: means(&self.pressure_difference),
+        }
+    }
+
+    /// Whether drag and lift have changed by less than the part `tolerance` of the drag in the time that
+    /// the mean flow needs for ten diameters.
+    pub fn are_steady(&self, tolerance: f64) -> bool {
         let count = 10 * SAMPLES;
         let is_still = |values: &[f64]| {
             let late = &values[values.len() - count..];
             let range = peak::largest(late).1 - peak::least(late).1;
-            range < 1e-5 * self.drag[self.drag.len() - 1].abs()
+            range < tolerance * self.drag[self.drag.len() - 1].abs()
         };
         self.drag.len() > count && is_still(&self.drag) && is_still(&self.lift)
     }
@@ -107,10 +121,15 @@ impl ChannelCylinder {
         Shape::Cylinder { axis: Axis::Z, centre, radius: 0.5 * DIAMETER }
     }
 
+    /// Whether the wake sheds vortices.
+    pub fn is_unsteady(&self) -> bool {
+        self.reynolds > UNSTEADY
+    }
+
     /// When the flow should be steady, or periodic for long, s: 40 diameters, or 80 if it must become
     /// unsteady first.
     pub fn end_time(&self) -> f64 {
-        let diameters = if self.reynolds > UNSTEADY { 80.0 } else { 40.0 };
+        let diameters = if self.is_unsteady() { 80.0 } else { 40.0 };
         diameters * DIAMETER / self.mean_velocity()
     }
 
@@ -129,15 +148,15 @@ impl ChannelCylinder {
         format!("Flow past a cylinder in a channel, Re = {}", self.reynolds)
     }
 
-    /// Judges the loads. Steady: `drag`, `lift` and `pressure_difference`. Periodic: `largest_drag`,
+    /// Judges the loads; they are steady if they change by less than the part `tolerance`. Steady: `drag`, `lift` and `pressure_difference`. Periodic: `largest_drag`,
     /// `largest_lift` and `strouhal` (frequency x diameter / mean velocity) of the last quarter.
-    pub fn judge(&self, report: &mut Report, loads: &Loads) {
+    pub fn judge(&self, report: &mut Report, loads: &Loads, tolerance: f64) {
         let (Some(&drag), Some(&lift), Some(&difference)) =
             (loads.drag.last(), loads.lift.last(), loads.pressure_difference.last())
         else {
             return;
         };
-        if self.reynolds > UNSTEADY {
+        if self.is_unsteady() {
             let late = |values: &[f64]| values[values.len() * 3 / 4..].to_vec();
             let (drag, lift) = (late(&loads.drag), late(&loads.lift));
             report.result("largest_drag", peak::largest(&drag).1, None);
@@ -148,7 +167,7 @@ impl ChannelCylinder {
             }
             return;
         }
-        let is_steady = loads.are_steady();
+        let is_steady = loads.are_steady(tolerance);
         if !is_steady {
             report.notes.push("not steady: no errors are given".to_owned());
         }
@@ -200,6 +219,19 @@ mod tests {
             let coefficient = 2.0 / (0.1 * (top * 2.0 / 3.0) * (top * 2.0 / 3.0));
             assert!((scene.coefficient(1.0) / coefficient - 1.0).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn noise_is_averaged_away_and_a_drift_is_not() {
+        let loads = |drift: f64| {
+            let noisy = |i: u32| 5.0 + if i % 2 == 0 { 0.5 } else { -0.5 } + drift * f64::from(i);
+            let drag: Vec<f64> = (0..2000).map(noisy).collect();
+            Loads { lift: drag.clone(), pressure_difference: drag.clone(), drag }
+        };
+        assert!(!loads(0.0).are_steady(0.02));
+        let averaged = loads(0.0).averaged(10.0);
+        assert!(averaged.are_steady(1e-12) && (averaged.drag[7] - 5.0).abs() < 1e-12);
+        assert!(!loads(1e-3).averaged(10.0).are_steady(0.02));
     }
 
     #[test]

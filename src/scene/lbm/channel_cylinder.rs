@@ -78,6 +78,9 @@ fn build<T: Compiled>(
     )
 }
 
+/// Steady loads change by less than this part.
+const STEADY: f64 = 1e-5;
+
 struct CylinderFlow {
     scene: ChannelCylinder,
     spacing: f64,
@@ -112,7 +115,7 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
             let speed = measure::largest_speed(whole, &parts);
             [drag, lift, difference, speed, measure::totals(whole, &parts).excess_mass]
         });
-        run.stop_when(every, |_, histories| Loads::new(&histories[0]).are_steady())
+        run.stop_when(every, |_, histories| Loads::new(&histories[0]).are_steady(STEADY))
     }
 
     fn judge(
@@ -122,7 +125,7 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
         _: &mut Simulation<Grid>,
         _: &Final<T>,
     ) {
-        self.scene.judge(report, &Loads::new(&summary.histories[0]));
+        self.scene.judge(report, &Loads::new(&summary.histories[0]), STEADY);
     }
 
     fn title(&self) -> String {
