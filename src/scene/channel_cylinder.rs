@@ -61,14 +61,14 @@ impl Loads {
         Self { drag, lift, pressure_difference }
     }
 
-    /// Whether drag and lift have changed by less than a part in 10^5 of the drag in the time that the
+    /// Whether drag and lift have changed by less than 3 parts in 10^5 of the drag in the time that the
     /// mean flow needs for ten diameters.
     pub fn are_steady(&self) -> bool {
         let count = 10 * SAMPLES;
         let is_still = |values: &[f64]| {
             let late = &values[values.len() - count..];
             let range = peak::largest(late).1 - peak::least(late).1;
-            range < 1e-5 * self.drag[self.drag.len() - 1].abs()
+            range < 3e-5 * self.drag[self.drag.len() - 1].abs()
         };
         self.drag.len() > count && is_still(&self.drag) && is_still(&self.lift)
     }
@@ -107,10 +107,10 @@ impl ChannelCylinder {
         Shape::Cylinder { axis: Axis::Z, centre, radius: 0.5 * DIAMETER }
     }
 
-    /// When the flow should be steady, or periodic for long, s: 40 diameters, or 80 if it must become
+    /// When the flow should be steady, or periodic for long, s: 60 diameters, or 80 if it must become
     /// unsteady first.
     pub fn end_time(&self) -> f64 {
-        let diameters = if self.reynolds > UNSTEADY { 80.0 } else { 40.0 };
+        let diameters = if self.reynolds > UNSTEADY { 80.0 } else { 60.0 };
         diameters * DIAMETER / self.mean_velocity()
     }
 
