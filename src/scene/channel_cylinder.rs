@@ -126,10 +126,10 @@ impl ChannelCylinder {
         self.reynolds > UNSTEADY
     }
 
-    /// When the flow should be steady, or periodic for long, s: 40 diameters, or 80 if it must become
+    /// When the flow should be steady, or periodic for long, s: 60 diameters, or 80 if it must become
     /// unsteady first.
     pub fn end_time(&self) -> f64 {
-        let diameters = if self.is_unsteady() { 80.0 } else { 40.0 };
+        let diameters = if self.is_unsteady() { 80.0 } else { 60.0 };
         diameters * DIAMETER / self.mean_velocity()
     }
 

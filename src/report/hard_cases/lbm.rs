@@ -20,8 +20,8 @@ pub const CASES: [HardCase; 17] = [
     vortices("vortices 3-D, 32", &[("resolution", "32"), RE_1600, SPACE, FAST]),
     vortices("vortices 3-D, 64", &[("resolution", "64"), RE_1600, SPACE, FAST]),
     // To the time in which the flow goes through the channel, and more.
-    cylinder("cylinder, Re 100, 41", 4.0, &[("reynolds", "100"), ("resolution", "41")]),
-    cylinder("cylinder, Re 1000, 41", 0.4, &[("reynolds", "1000"), ("resolution", "41")]),
+    cylinder("cylinder, Re 100, 41", 4.0, &[("reynolds", "100"), ("resolution", "41"), FAST]),
+    cylinder("cylinder, Re 1000, 41", 0.4, &[("reynolds", "1000"), ("resolution", "41"), FAST]),
 ];
 
 type Settings = &'static [(&'static str, &'static str)];
@@ -39,7 +39,7 @@ const COLLISIONS: &[Variant] = &[
     variant("mrt 3/16", &[("collision", "mrt")]),
     variant("regularised", &[("collision", "regularised")]),
     variant("central", &[("collision", "central-moments")]),
-    variant("default (cumulant)", &[]),
+    variant("cumulant (default)", &[("collision", "cumulant")]),
 ];
 
 const fn case(
