@@ -121,6 +121,15 @@ impl Desk {
     }
 }
 
+/// What is looked at while a leg runs.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Watch<'a> {
+    /// State columns are checked to be finite after every step whose number (from 1) divides by this.
+    pub check_every: Option<u64>,
+    /// Where it is written down what the workers do.
+    pub trace: Option<&'a Trace>,
+}
+
 /// One leg, ready to be run by a schedule.
 pub(crate) struct Leg<'a, D: Domain> {
     domain: &'a D,
@@ -130,15 +139,13 @@ pub(crate) struct Leg<'a, D: Domain> {
     desk: &'a Desk,
     clock: &'a Clock,
     steps: Range<u64>,
-    check_every: Option<u64>,
-    trace: Option<&'a Trace>,
+    watch: Watch<'a>,
     failed: AtomicBool,
     failure: Mutex<Option<Failure>>,
 }
 
 impl<'a, D: Domain> Leg<'a, D> {
-    /// A leg of `steps` steps; state columns are checked to be finite after every step whose
-    /// number (from 1) divides by `check_every`; what the workers do goes into `trace`.
+    /// A leg of `steps` steps.
     ///
     /// # Panics
     /// If the partition is not sealed or has other points than the columns.
@@ -149,8 +156,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         desk: &'a mut Desk,
         clock: &'a Clock,
         steps: Range<u64>,
-        check_every: Option<u64>,
-        trace: Option<&'a Trace>,
+        watch: Watch<'a>,
     ) -> Self {
         let partition = domain.partition();
         assert!(partition.is_sealed(), "the domain's partition is not sealed");
@@ -168,8 +174,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             desk,
             clock,
             steps,
-            check_every,
-            trace,
+            watch,
             failed: AtomicBool::new(false),
             failure: Mutex::new(None),
         }
@@ -231,7 +236,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             }
             Ok::<_, Fault>(())
         })?;
-        let is_checked = self.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
+        let is_checked = self.watch.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
         if is_checked && part + 1 == self.parts() {
             self.check_finite(step, sub_domain)?;
         }
@@ -304,12 +309,12 @@ impl<D: Domain> Work for Leg<'_, D> {
         if self.failed() {
             return;
         }
-        let begin = self.trace.map(Trace::now);
+        let begin = self.watch.trace.map(Trace::now);
         // One net under everything: a worker that unwound would leave the others waiting for it.
         let at = Cell::new(self.step.part_start[part]);
         let outcome =
             catch_unwind(AssertUnwindSafe(|| self.run_part(worker, step, part, sub_domain, &at)));
-        if let (Some(trace), Some(begin)) = (self.trace, begin) {
+        if let (Some(trace), Some(begin)) = (self.watch.trace, begin) {
             let (part, sub_domain) = (part as u32, sub_domain as u32);
             trace.record(worker, Event { begin, end: trace.now(), step, part, sub_domain });
         }

@@ -20,7 +20,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::clock::Clock;
 use crate::columns::{Column, Columns, Role};
 use crate::domain::Domain;
-use crate::leg::{Cause, Desk, Failure, Leg, panic_message};
+use crate::leg::{Cause, Desk, Failure, Leg, Watch, panic_message};
 use crate::schedule::{Executor, Schedule};
 use crate::stage::Fault;
 use crate::step::Step;
@@ -216,8 +216,7 @@ impl<D: Domain> Simulation<D> {
                 &mut self.desk,
                 &self.clock,
                 first..first + steps,
-                self.settings.check_every,
-                self.trace.as_ref(),
+                Watch { check_every: self.settings.check_every, trace: self.trace.as_ref() },
             );
             let begin = self.trace.as_ref().map(Trace::now);
             self.executor.run(&leg);
@@ -391,7 +390,7 @@ fn run_once<D: Domain>(
 ) -> Result<(), Failure> {
     let mut desk = Desk::new(step, columns, workers);
     let now = clock.step();
-    let leg = Leg::new(domain, columns, step, &mut desk, clock, now..now + 1, None, None);
+    let leg = Leg::new(domain, columns, step, &mut desk, clock, now..now + 1, Watch::default());
     executor.run(&leg);
     leg.finish()
 }

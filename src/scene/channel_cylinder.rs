@@ -224,7 +224,8 @@ mod tests {
     #[test]
     fn noise_is_averaged_away_and_a_drift_is_not() {
         let loads = |drift: f64| {
-            let noisy = |i: u32| 5.0 + if i % 2 == 0 { 0.5 } else { -0.5 } + drift * f64::from(i);
+            let noise = |i: u32| if i.is_multiple_of(2) { 0.5 } else { -0.5 };
+            let noisy = |i: u32| 5.0 + noise(i) + drift * f64::from(i);
             let drag: Vec<f64> = (0..2000).map(noisy).collect();
             Loads { lift: drag.clone(), pressure_difference: drag.clone(), drag }
         };
