@@ -3,7 +3,7 @@
 use super::{HardCase, Sign, Variant, variant};
 
 /// Vortices, free surfaces, walls and shocks.
-pub const CASES: [HardCase; 7] = [
+pub const CASES: [HardCase; 8] = [
     HardCase {
         name: "taylor-green, Re 1000",
         method: "sph",
@@ -81,6 +81,20 @@ pub const CASES: [HardCase; 7] = [
         ],
     },
     HardCase {
+        name: "cylinder in a channel, Re 100",
+        method: "sph",
+        time_step: Some("courant"),
+        scene: "channel-cylinder",
+        settings: &[("reynolds", "100"), ("resolution", "41")],
+        until: 5.0,
+        variants: BETWEEN_WALLS,
+        signs: &[
+            // 0.30 (Schaefer & Turek 1996, case 2D-2).
+            Sign { result: "strouhal", least: 0.25, most: 0.35, symptom: "wrong shedding" },
+            CLUMPING,
+        ],
+    },
+    HardCase {
         name: "noh, 2-D",
         method: "sph",
         time_step: Some("courant"),
@@ -120,6 +134,7 @@ const VORTICES: &[Variant] = &[
         ],
     ),
     variant("wendland-c2, 1.5", &[("kernel", "wendland-c2"), ("smoothing_ratio", "1.5")]),
+    variant("quintic spline, 1.6", &[("kernel", "quintic-spline"), ("smoothing_ratio", "1.6")]),
     variant("gaussian", &[("kernel", "gaussian")]),
     variant("symplectic-euler", &[("integrator", "symplectic-euler")]),
     variant("rk4", &[("integrator", "rk4")]),
