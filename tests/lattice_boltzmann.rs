@@ -71,23 +71,20 @@ fn the_flow_around_a_cylinder_has_the_right_profile() {
 
 #[test]
 fn the_drag_of_spheres_converges() {
-    for (solid_fraction, within) in [("0.027", 0.03), ("0.216", 0.03)] {
-        let errors =
-            errors("sphere-array", &[("resolution", "16"), ("solid_fraction", solid_fraction)]);
-        assert!(errors["drag_k"].abs() < within, "{solid_fraction}: {errors:?}");
-        assert!(errors["momentum_balance"].abs() < 1e-5, "{solid_fraction}: {errors:?}");
-    }
+    let [coarse, fine] = ["12", "24"].map(|n| {
+        let errors = errors("sphere-array", &[("resolution", n), ("relaxation_time", "1")]);
+        assert!(errors["momentum_balance"].abs() < 1e-5, "{errors:?}");
+        errors["drag_k"].abs()
+    });
+    assert!(fine < 0.02 && coarse / fine > 3.0, "{coarse} {fine}");
 }
 
 #[test]
 fn flow_to_and_fro_is_right_in_second_order() {
-    for womersley in ["1", "10"] {
-        let at =
-            |n| errors("womersley", &[("resolution", n), ("womersley", womersley)])["velocity_l2"];
-        let (coarse, fine) = (at("16"), at("32"));
-        let order = (coarse / fine).log2();
-        assert!(fine < 2e-3 && (order - 2.0).abs() < 0.1, "{womersley}: {coarse} {fine}");
-    }
+    let [coarse, fine] =
+        ["32", "64"].map(|n| errors("womersley", &[("resolution", n)])["velocity_l2"]);
+    let order = (coarse / fine).log2();
+    assert!(fine < 1e-4 && (order - 2.0).abs() < 0.1, "{coarse} {fine}");
 }
 
 #[test]
@@ -101,7 +98,7 @@ fn layers_of_shear_roll_up() {
 /// Thin layers on a coarse mesh, at a viscosity that is hardly more than none, by the default collision.
 #[test]
 fn thin_layers_survive() {
-    let settings = [("resolution", "64"), ("kappa", "80"), ("reynolds", "1e6")];
+    let settings = [("resolution", "64"), ("kappa", "80"), ("reynolds", "1e5")];
     let report = run("double-shear-layer", &settings, Orders::default());
     assert_eq!(report.results["vortices"], 2.0);
     assert!(report.results["kinetic_energy"] < 0.48, "{:?}", report.results);
@@ -109,19 +106,26 @@ fn thin_layers_survive() {
 
 #[test]
 fn vortices_in_space_lose_the_right_energy() {
-    let settings =
-        [("dim", "3"), ("resolution", "32"), ("reynolds", "628.3185307"), ("mach", "0.1")];
+    let settings = [
+        ("dim", "3"),
+        ("resolution", "32"),
+        ("reynolds", "628.3185307"),
+        ("mach", "0.1"),
+        ("collision", "cumulant"),
+    ];
     let errors = errors("taylor-green", &settings);
-    assert!(errors["peak_dissipation"].abs() < 0.03, "{errors:?}");
-    assert!(errors["peak_time"].abs() < 0.03, "{errors:?}");
+    assert!(errors["peak_dissipation"].abs() < 0.02, "{errors:?}");
+    assert!(errors["peak_time"].abs() < 0.01, "{errors:?}");
 }
 
-/// A coarse mesh; the pressure before the cylinder is above that of the outlet, which by the Mach number
-/// makes the fluid denser there, and the drag larger.
+/// A coarse mesh, on which the cylinder is ten spacings thick; the lift is a part in 500 of the drag.
 #[test]
 fn flow_past_a_cylinder_between_walls() {
-    let report = run("channel-cylinder", &[("resolution", "41")], Orders::default());
-    println!("{report:?}");
+    let settings = [("resolution", "41"), ("mach", "0.1")];
+    let report = run("channel-cylinder", &settings, Orders::default());
+    assert!(report.errors["drag"].abs() < 0.006, "{:?}", report.errors);
+    assert!(report.errors["lift"].abs() < 0.15, "{:?}", report.errors);
+    assert!(report.errors["pressure_difference"].abs() < 0.05, "{:?}", report.errors);
 }
 
 #[test]

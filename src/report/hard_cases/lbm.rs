@@ -38,8 +38,8 @@ const COLLISIONS: &[Variant] = &[
     variant("trt 1/4", &[("collision", "trt"), ("magic", "0.25")]),
     variant("mrt 3/16", &[("collision", "mrt")]),
     variant("regularised", &[("collision", "regularised")]),
-    variant("central", &[("collision", "central-moments")]),
-    variant("cumulant (default)", &[("collision", "cumulant")]),
+    variant("central (default)", &[("collision", "central-moments")]),
+    variant("cumulant", &[("collision", "cumulant")]),
 ];
 
 const fn case(

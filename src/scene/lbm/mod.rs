@@ -54,7 +54,7 @@ fn refused(precision: Precision) -> SceneError {
 const COLLISION: [Parameter; 3] = [
     Parameter::choice(
         "collision",
-        &["cumulant", "central-moments", "regularised", "trt", "mrt", "bgk"],
+        &["central-moments", "cumulant", "regularised", "trt", "mrt", "bgk"],
         "how populations relax",
     ),
     Parameter::number(
@@ -116,11 +116,11 @@ fn scheme(parameters: &Parameters, lattice: LatticeKind, has_walls: bool) -> Sch
         lattice,
         collision: match parameters.choice("collision") {
             "bgk" => Collision::Bgk,
-            "central-moments" => Collision::CentralMoments,
+            "cumulant" => Collision::Cumulant,
             "regularised" => Collision::Regularised,
             "trt" => Collision::Trt { magic: parameters.number("magic") },
             "mrt" => Collision::Mrt { magic: parameters.number("magic") },
-            _ => Collision::Cumulant,
+            _ => Collision::CentralMoments,
         },
         wall: match has_walls && parameters.choice("wall") == "half-way" {
             true => Wall::HalfWay,

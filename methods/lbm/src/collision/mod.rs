@@ -22,8 +22,8 @@ use crate::lattice::Lattice;
 
 /// Choice of a collision.
 ///
-/// Cumulants are the default because they survive where the others do not, and are as accurate where all
-/// do (`docs/scenes.md` has the map); in slow flow along walls two relaxation times are better.
+/// Central moments are the default because they survive where others do not (`docs/scenes.md` has the map)
+/// and are as accurate where all do; in slow flow along walls two relaxation times are better.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Collision {
@@ -43,9 +43,9 @@ pub enum Collision {
     },
     /// Central moments (Geier et al. 2006; De Rosis 2016, 2017): all moments but the stress are set to
     /// their equilibrium as seen from the fluid.
+    #[default]
     CentralMoments,
     /// Cumulants (Geier et al. 2015), all but those of the stress set to their equilibrium.
-    #[default]
     Cumulant,
     /// Recursive regularisation (Malaspinas 2015): what is beyond the stress is not relaxed but
     /// computed anew.
