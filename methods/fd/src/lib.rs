@@ -1,0 +1,3 @@
+//! Finite differences on the finegrain framework.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
