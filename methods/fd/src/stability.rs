@@ -146,9 +146,9 @@ pub(crate) fn laplacian_radius(
 fn closed_radius(line: &Line<f64>, order: Order, h: f64) -> f64 {
     let n = line.points.min(60);
     let short = Line { points: n, ..line.clone() };
-    let inside = central::second_derivative(order);
+    let inside: Vec<f64> = central::second_derivative(order).into_iter().map(value).collect();
     let Some(closure) = Closure::of(order) else { return 0.0 };
-    let norm = |i: usize| value(closure.norm(i.min(n - 1 - i)));
+    let norm: Vec<f64> = (0..n).map(|i| value(closure.norm(i.min(n - 1 - i)))).collect();
     let apply = |u: &[f64]| -> Vec<f64> {
         (0..n)
             .map(|i| match short.row(i) {
@@ -158,14 +158,12 @@ fn closed_radius(line: &Line<f64>, order: Order, h: f64) -> f64 {
                 }
                 None => {
                     let pairs = inside.iter().zip(1..);
-                    pairs
-                        .map(|(&b, k)| value(b) * (u[i + k] - 2.0 * u[i] + u[i - k]) / (h * h))
-                        .sum()
+                    pairs.map(|(b, k)| b * (u[i + k] - 2.0 * u[i] + u[i - k]) / (h * h)).sum()
                 }
             })
             .collect()
     };
-    let dot = |u: &[f64], v: &[f64]| -> f64 { (0..n).map(|i| norm(i) * u[i] * v[i]).sum() };
+    let dot = |u: &[f64], v: &[f64]| -> f64 { (0..n).map(|i| norm[i] * u[i] * v[i]).sum() };
     let mut u: Vec<f64> = (0..n).map(|i| (i as f64 * 2.7).cos()).collect();
     let mut radius = 0.0;
     for _ in 0..2000 {

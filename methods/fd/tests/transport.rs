@@ -40,8 +40,8 @@ fn faces_are_of_their_order() {
     }
 }
 
-/// In at one end, out at the other: what is inside in the end is what came in, through ghost points of
-/// second order.
+/// In at one end, out at the other: what is inside in the end is what came in. Ghost points on a straight line
+/// through the value given let the order fall to one and a half, whatever it is inside.
 #[test]
 fn what_flows_in_flows_through_and_out() {
     let wave = |s: f64| (3.0 * s).sin() + 0.5;
@@ -56,12 +56,11 @@ fn what_flows_in_flows_through_and_out() {
         let (simulation, parts) = run(fd, count as u64);
         error(&simulation, &parts, |x, t| wave(x[0] - t))
     };
-    for face in [Face::Upwind3, Face::Weno5, Face::Weno5Z] {
-        for n in [40, 80, 160, 320] {
-            println!("inflow {} {n} {:e}", face.name(), at(face, n));
-        }
+    for face in [Face::Upwind3, Face::Weno5Z] {
+        let measured = order([40, 80].map(|n| at(face, n)), [40, 80]);
+        assert!((measured - 1.5).abs() < 0.1, "{} is of order {measured}", face.name());
+        assert!(at(face, 80) < 3e-3);
     }
-    panic!("look");
 }
 
 /// Mass is kept to round-off, and WENO makes no new extrema of a step worth mentioning.
