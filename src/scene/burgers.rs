@@ -17,7 +17,7 @@ pub const LARGEST_SLOPE: [f64; 2] = [152.00516, 1.6037 / PI];
 /// Parameters that every method shares.
 pub const PARAMETERS: [Parameter; 1] = [Parameter::integer(
     "resolution",
-    801,
+    1201,
     [21, 20_001],
     "points from -1 to 1; odd, to have one at 0",
 )];

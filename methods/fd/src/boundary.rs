@@ -143,4 +143,28 @@ impl Boundary {
         }
         Ok(())
     }
+
+    /// Refuses conditions that do not go with a flow of this velocity: a value belongs where it comes in, and
+    /// nothing where it goes out.
+    pub(crate) fn check_flow(&self, mesh: &Mesh, velocity: [f64; 3]) -> Result<(), FdError> {
+        let bounded = mesh.sides().iter().zip(&self.0).zip(AXES).zip(velocity);
+        for (((side, ends), axis), v) in bounded {
+            if side.spread != Spread::Ends {
+                continue;
+            }
+            for ((condition, end), inwards) in ends.iter().zip(["lower", "upper"]).zip([v, -v]) {
+                let is_right = match condition {
+                    Condition::Dirichlet(_) => inwards > 0.0,
+                    Condition::Outflow => inwards <= 0.0,
+                    _ => false,
+                };
+                if !is_right {
+                    let cause =
+                        "where it flows in a value must be given, elsewhere nothing".to_owned();
+                    return Err(FdError::Condition { axis, end, cause });
+                }
+            }
+        }
+        Ok(())
+    }
 }

@@ -11,6 +11,7 @@ use crate::boundary::{Boundary, Condition};
 use crate::equation::Equation;
 use crate::equation::advection::Transport;
 use crate::equation::burgers::Steepening;
+use crate::equation::drift::Drifting;
 use crate::equation::gas::Conservation;
 use crate::equation::heat::Diffusion;
 use crate::equation::wave::Waves;
@@ -288,6 +289,14 @@ pub trait Compiled: Real {
         form: Form,
     ) -> Result<Stage<Grid>, FdError>;
 
+    /// The stage of advection by central differences.
+    #[doc(hidden)]
+    fn drift(
+        builder: &Builder<'_, Self, 1, 0>,
+        velocity: [f64; 3],
+        form: Form,
+    ) -> Result<Stage<Grid>, FdError>;
+
     /// The stage of advection.
     #[doc(hidden)]
     fn advection(
@@ -340,6 +349,14 @@ macro_rules! compiled {
                     form: Form,
                 ) -> Result<Stage<Grid>, FdError> {
                     builder.central(Waves { speed_squared: Self::of(speed * speed) }, form)
+                }
+
+                fn drift(
+                    builder: &Builder<'_, Self, 1, 0>,
+                    velocity: [f64; 3],
+                    form: Form,
+                ) -> Result<Stage<Grid>, FdError> {
+                    builder.central(Drifting { velocity: velocity.map(Self::of) }, form)
                 }
 
                 fn advection(

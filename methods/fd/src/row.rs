@@ -162,20 +162,23 @@ where
 
     /// Copies `length` places of the rows, from `before` before `x` on, with what lies beyond their ends.
     fn copy(&self, window: &mut [Window<T>], x: usize, before: usize, length: usize) {
+        let nx = self.unknowns[0].here.len();
+        // Of the window, how much lies before the row and how much does not lie beyond it.
+        let (start, end) = (before.saturating_sub(x), (nx + before).saturating_sub(x).min(length));
         for f in 0..F + G {
-            for (n, to) in window[f][..length].iter_mut().enumerate() {
-                *to = self.beyond(f, (x + n) as isize - before as isize);
+            let window = &mut window[f][..length];
+            let row = self.cross(f).here;
+            window[start..end].copy_from_slice(&row[x + start - before..x + end - before]);
+            for n in (0..start).chain(end..length) {
+                window[n] = self.beyond(f, (x + n) as isize - before as isize);
             }
         }
     }
 
-    /// Field `f` at a place of the row or beyond; 0 where there is nothing.
+    /// Field `f` at a place beyond the row; 0 where there is nothing.
     fn beyond(&self, f: usize, place: isize) -> T {
         let row = self.cross(f).here;
         let nx = row.len() as isize;
-        if (0..nx).contains(&place) {
-            return row[place as usize];
-        }
         let Some(line) = self.sweep.line(f, 0) else { return T::zero() };
         match &line.ends {
             Ends::Periodic => row[place.rem_euclid(nx) as usize],

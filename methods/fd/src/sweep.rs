@@ -2,9 +2,9 @@
 
 use finegrain_framework::pack::Pack;
 use finegrain_framework::space::Grid;
-use finegrain_framework::space::grid::RowsMut;
+use finegrain_framework::space::grid::{self, RowsMut};
 use finegrain_framework::{
-    ColumnId, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, State,
+    ColumnId, Fault, Handle, Moment, Near, Part, Rate, RateStage, Rates, Real, State,
 };
 
 use crate::around::{Coefficients, Weights};
@@ -99,13 +99,15 @@ where
         scratch.data.resize_with(F * 3, Vec::new);
         scratch.window.resize(F + G, crate::row::EMPTY.map(|()| T::zero()));
         let closed = self.lines[0][0].as_ref().map_or(0, Line::closed);
+        let fields: [_; F] = std::array::from_fn(|f| Rows::new(near, self.unknowns[f]));
+        let given: [_; G] = std::array::from_fn(|g| Rows::new(near, self.given[g]));
         for (j, k) in near.sub_domain().rows() {
             self.fill(near, scratch, (j, k), moment.stage_time);
             let Scratch { ghosts, data, window } = &mut *scratch;
             let row = Row {
                 sweep: self,
-                unknowns: std::array::from_fn(|f| self.cross(near, ghosts, data, f, (j, k))),
-                given: std::array::from_fn(|g| self.cross(near, ghosts, data, F + g, (j, k))),
+                unknowns: std::array::from_fn(|f| self.cross(&fields[f], ghosts, data, f, (j, k))),
+                given: std::array::from_fn(|g| self.cross(&given[g], ghosts, data, F + g, (j, k))),
                 data,
                 advance,
                 dt,
@@ -189,13 +191,12 @@ where
     /// The rows around row `(j, k)` of field `f`, unknowns first.
     fn cross<'a>(
         &'a self,
-        near: &Near<'a, Grid>,
+        rows: &Rows<'a, T>,
         ghosts: &'a [Vec<T>],
         data: &'a [Vec<T>],
         f: usize,
         (j, k): (usize, usize),
     ) -> Cross<'a, T, M> {
-        let rows = near.rows(self.column(f));
         let (y, z) = (j as isize, k as isize);
         let mut cross = Cross { here: rows.row(y, z), lines: [[&[]; M]; 2], closed: [None; 2] };
         for a in 1..3 {
@@ -223,6 +224,37 @@ where
             }
         }
         cross
+    }
+}
+
+/// Rows of one column, of which those of the tile itself are found without a search.
+struct Rows<'a, T> {
+    own: Part<'a, T>,
+    near: grid::Rows<'a, T>,
+    /// Points of a row.
+    length: usize,
+    /// First row and plane of the tile, and how many.
+    first: [isize; 2],
+    count: [isize; 2],
+}
+
+impl<'a, T: Real> Rows<'a, T> {
+    fn new(near: &Near<'a, Grid>, column: State<T>) -> Self {
+        let mut rows = near.sub_domain().rows().map(|(j, k)| [j as isize, k as isize]);
+        let first = rows.next().unwrap_or_default();
+        let last = rows.last().unwrap_or(first);
+        let count = [last[0] - first[0] + 1, last[1] - first[1] + 1];
+        let length = near.domain().shape()[0];
+        Self { own: near.state(column).own(), near: near.rows(column), length, first, count }
+    }
+
+    #[inline]
+    fn row(&self, j: isize, k: isize) -> &'a [T] {
+        let [y, z] = [j - self.first[0], k - self.first[1]];
+        if (0..self.count[0]).contains(&y) && (0..self.count[1]).contains(&z) {
+            return &self.own.span(z as usize)[y as usize * self.length..][..self.length];
+        }
+        self.near.row(j, k)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Bad input gets an error that names what and where, and never a panic.
 
 use finegrain_fd::{
-    Advection, Boundary, Burgers, Condition, Face, FdError, Gas, GasEnd, GasState, Heat, Mesh,
-    Order, Side, Wave,
+    Advection, Boundary, Burgers, Condition, Drift, Face, FdError, Gas, GasEnd, GasState, Heat,
+    Mesh, Order, Side, Wave,
 };
 use finegrain_framework::Integrator;
 
@@ -92,6 +92,12 @@ fn conditions_that_make_no_sense() {
     assert!(with(Condition::robin(1.0, 0.0, 0.0)).contains("slope is 0"));
     assert!(with(Condition::dirichlet(f64::NAN)).contains("NaN"));
     assert!(with(Condition::Outflow).contains("second derivative"));
+    let (velocity, order, integrator) = ([0.0, 1.0, 0.0], Order::Fourth, Integrator::Rk4);
+    let mut drift = Drift { velocity, order, integrator, boundary: heat().boundary };
+    let text = said(drift.model::<f64>(&closed(32), 1e-6, &|_| 0.0));
+    assert!(text.contains("upper end of y") && text.contains("flows in"), "{text}");
+    drift.boundary.0[1][1] = Condition::Outflow;
+    assert!(drift.model::<f64>(&closed(32), 1e-6, &|_| 0.0).is_ok());
 }
 
 #[test]

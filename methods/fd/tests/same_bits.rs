@@ -65,7 +65,7 @@ fn same_bits<T: Compiled>(model: impl Fn() -> Fd<T>) {
     let serial = Settings { schedule: Schedule::Serial, workers: 1, ..Settings::default() };
     let expected = hash(serial);
     for schedule in Schedule::ALL {
-        for workers in [1, 2, 5] {
+        for workers in [1, 3] {
             for hand_out in [HandOut::Natural, HandOut::Shuffled { seed: 3 }] {
                 let settings = Settings { schedule, workers, hand_out, ..Settings::default() };
                 assert_eq!(hash(settings.clone()), expected, "{settings:?}");
@@ -77,7 +77,7 @@ fn same_bits<T: Compiled>(model: impl Fn() -> Fd<T>) {
 #[test]
 fn of_heat() {
     same_bits(|| heat::<f64>(Order::Second, Integrator::Euler));
-    same_bits(|| heat::<f64>(Order::Sixth, Integrator::Rk4));
+    same_bits(|| heat::<f64>(Order::Sixth, Integrator::SspRk3));
     same_bits(|| heat::<f32>(Order::Fourth, Integrator::Rk2));
 }
 

@@ -186,17 +186,7 @@ fn picture<T: Compiled>(
     let [nx, ny, nz] = parts.mesh.shape();
     if ny * nz == 1 {
         let computed = values(simulation, parts, 0).map(|(x, u)| [x[0], u]);
-        let side = parts.mesh.sides()[0];
-        let line = (0..=1000).map(|k| {
-            let x = side.lower + (side.upper - side.lower) * f64::from(k) / 1000.0;
-            [x, exact([x, 0.0, 0.0])]
-        });
-        return Chart::new(title)
-            .x(Axis::new("x").unit("m"))
-            .y(quantity)
-            .series("finite differences", computed)
-            .reference("exact", line)
-            .into();
+        return chart(title, quantity, computed.collect(), |x| exact([x, 0.0, 0.0])).into();
     }
     let slice = values(simulation, parts, 0).skip(nz / 2 * nx * ny).take(nx * ny);
     let ([x, y, _], [dx, dy, _]) = (parts.mesh.position([0; 3]), parts.mesh.spacing());
@@ -204,6 +194,26 @@ fn picture<T: Compiled>(
         .title(title)
         .quantity(quantity)
         .into()
+}
+
+/// Points along x, at most 200 of them, with what they should be.
+fn chart(
+    title: String,
+    quantity: Axis,
+    points: Vec<[f64; 2]>,
+    exact: impl Fn(f64) -> f64,
+) -> Chart {
+    let [first, last] = [points.first(), points.last()].map(|end| end.map_or(0.0, |end| end[0]));
+    let line = (0..=1000).map(|k| {
+        let x = first + (last - first) * f64::from(k) / 1000.0;
+        [x, exact(x)]
+    });
+    let step = points.len().div_ceil(200).max(1);
+    Chart::new(title)
+        .x(Axis::new("x").unit("m"))
+        .y(quantity)
+        .series("finite differences", points.into_iter().step_by(step))
+        .reference("exact", line)
 }
 
 /// Everything that is modelled, for checkpoints.

@@ -79,6 +79,10 @@ impl<T: Compiled> Flow<T> for Tube {
         let time = simulation.clock().time();
         let title = format!("Sod's shock tube, {}-D, t = {time:.3} s", self.scene.dims);
         let quantity = Axis::new("density").unit("kg/m^3");
-        super::picture(simulation, parts, title, quantity, |x| self.scene.exact(x[0], time).density)
+        // Where the tube is, and of its rows one.
+        let gases = gas::gases(simulation, parts, TUBE.heat_ratio).into_iter();
+        let row = gases.take(parts.mesh.shape()[0]).filter(|(x, _)| (0.0..=1.0).contains(x));
+        let points = row.map(|(x, gas)| [x, gas.density]).collect();
+        super::chart(title, quantity, points, |x| self.scene.exact(x, time).density).into()
     }
 }

@@ -5,6 +5,7 @@
 
 pub(crate) mod advection;
 pub(crate) mod burgers;
+pub(crate) mod drift;
 pub(crate) mod gas;
 pub(crate) mod heat;
 pub mod wave;
@@ -14,6 +15,7 @@ use finegrain_framework::pack::Pack;
 
 pub use advection::Advection;
 pub use burgers::Burgers;
+pub use drift::Drift;
 pub use gas::{Gas, GasEnd, GasState};
 pub use heat::Heat;
 pub use wave::Wave;

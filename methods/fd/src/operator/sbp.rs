@@ -7,8 +7,8 @@
 //! 1994, J. Comput. Phys. 110; Mattsson & Nordstrom 2004, J. Comput. Phys. 199). With boundary
 //! conditions imposed by penalties that fit, the semi-discrete energy cannot grow.
 //!
-//! Inside the order is `2 p`, next to the boundary `p` (second derivative of order 2: 1 less), so that
-//! solutions are of order `p + 1` for first and `p + 2` for second derivatives, at most `2 p`
+//! Inside the order is `2 p`, next to the boundary `p`, so that solutions are of order `p + 1` for first and
+//! `p + 2` for second derivatives, at most `2 p`
 //! (Svard & Nordstrom 2006).
 
 use super::Fraction;
