@@ -96,12 +96,12 @@ impl<T: Real> Line<T> {
     /// The row of a point next to an end, and which end.
     pub fn row(&self, point: usize) -> Option<(&Row<T>, usize)> {
         let Ends::Closed(rows) = &self.ends else { return None };
-        let at = |end: usize| rows[end].get(self.from_end(point, end)).map(|row| (row, end));
+        let at = |end: usize| rows[end].get(self.counted_from(point, end)).map(|row| (row, end));
         at(0).or_else(|| at(1))
     }
 
     /// The point, or how far in it is, counted from an end.
-    pub fn from_end(&self, point: usize, end: usize) -> usize {
+    pub fn counted_from(&self, point: usize, end: usize) -> usize {
         if end == 0 { point } else { self.points - 1 - point }
     }
 }

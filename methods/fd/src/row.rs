@@ -187,7 +187,7 @@ where
                 let (end, depth) = if place < 0 { (0, -1 - place) } else { (1, place - nx) };
                 let Some(ghost) = ghosts[end].get(depth as usize) else { return T::zero() };
                 let data = if f < F { self.data[f * 3][end] } else { T::zero() };
-                ghost.keep * row[line.from_end(ghost.source, end)] + ghost.data * data
+                ghost.keep * row[line.counted_from(ghost.source, end)] + ghost.data * data
             }
         }
     }

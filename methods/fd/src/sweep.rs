@@ -168,11 +168,11 @@ where
                     }
                     Ends::Ghosts(ghosts) => {
                         for (end, ghosts) in ghosts.iter().enumerate() {
-                            let at = line.from_end([0, j, k][a], end);
+                            let at = line.counted_from([0, j, k][a], end);
                             for depth in 0..R.saturating_sub(at) {
                                 let ghost = ghosts[depth];
                                 let mut source = [j as isize, k as isize];
-                                source[a - 1] = line.from_end(ghost.source, end) as isize;
+                                source[a - 1] = line.counted_from(ghost.source, end) as isize;
                                 let from = near.rows(self.column(f)).row(source[0], source[1]);
                                 let to = &mut scratch.ghosts[ghost_row(f, a, end, depth)];
                                 to.clear();

@@ -53,16 +53,29 @@ fn divergence<T: Real, F: FaceValue, V: Pack<Scalar = T>, const R: usize, const 
     v: At<'_, V, R, K>,
     axis: usize,
 ) -> V {
-    let flux = |face: isize| {
-        let at = |by: isize| u.shifted(axis, face + by);
-        let left = F::value([at(-3), at(-2), at(-1), at(0), at(1)]);
-        let right = F::value([at(2), at(1), at(0), at(-1), at(-2)]);
-        let speed = (v.shifted(axis, face) + v.shifted(axis, face - 1)) * T::of(0.5);
-        let forth = (speed + speed.abs()) * T::of(0.5);
-        let back = (speed - speed.abs()) * T::of(0.5);
-        forth * left + back * right
-    };
-    (flux(1) - flux(0)) * u.per_spacing(axis)
+    let ahead = flux::<T, F, V, R, K>(u, v, axis, 1);
+    let behind = flux::<T, F, V, R, K>(u, v, axis, 0);
+    (ahead - behind) * u.per_spacing(axis)
+}
+
+/// `v u` on the face before point `face`, from upstream.
+#[inline(always)]
+fn flux<T: Real, F: FaceValue, V: Pack<Scalar = T>, const R: usize, const K: usize>(
+    u: At<'_, V, R, K>,
+    v: At<'_, V, R, K>,
+    axis: usize,
+    face: isize,
+) -> V {
+    let mut points = [u.here(); 6];
+    for n in 0..6 {
+        points[n] = u.shifted(axis, face - 3 + n as isize);
+    }
+    let [a, b, c, d, e, f] = points;
+    let (left, right) = (F::value([a, b, c, d, e]), F::value([f, e, d, c, b]));
+    let speed = (v.shifted(axis, face) + v.shifted(axis, face - 1)) * T::of(0.5);
+    let forth = (speed + speed.abs()) * T::of(0.5);
+    let back = (speed - speed.abs()) * T::of(0.5);
+    forth * left + back * right
 }
 
 /// Advection, and how it is solved.

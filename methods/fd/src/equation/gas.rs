@@ -133,19 +133,22 @@ impl<T: Real> Conservation<T> {
         high: &mut [V; F],
         share: V,
     ) {
-        let after = |flux: [V; F]| {
-            let mut after = u;
-            for f in 0..F {
-                after[f] = u[f] + flux[f] * share;
-            }
-            after
-        };
-        let safe = after(low);
-        let density = after(*high)[0];
+        let safe = after(u, low, share);
+        let density = after(u, *high, share)[0];
         blend(low, high, part(safe[0], density));
-        let pressure = self.pressure(after(*high));
+        let pressure = self.pressure(after(u, *high, share));
         blend(low, high, part(self.pressure(safe), pressure));
     }
+}
+
+/// A point that changes by `share` times a flux.
+#[inline(always)]
+fn after<V: Pack, const F: usize>(u: [V; F], flux: [V; F], share: V) -> [V; F] {
+    let mut after = u;
+    for f in 0..F {
+        after[f] = u[f] + flux[f] * share;
+    }
+    after
 }
 
 /// How much of the way from a safe value to another can be gone until [`LEAST`] of it is left.
@@ -198,6 +201,10 @@ pub struct Gas {
     pub ends: [[GasEnd; 2]; 2],
 }
 
+/// Makes the stage of a gas from its ratio of specific heats.
+type MakeStage<T, const F: usize> =
+    fn(&Builder<'_, T, F, 0>, f64, Form) -> Result<Stage<Grid>, FdError>;
+
 impl Gas {
     /// Largest Courant number with which positive stays positive (Hu et al. 2013, section 2.2).
     pub const LARGEST_COURANT: f64 = 0.5;
@@ -244,7 +251,7 @@ impl Gas {
         &self,
         mesh: &Mesh,
         start: &dyn Fn([f64; 3]) -> GasState,
-        stage: fn(&Builder<'_, T, F, 0>, f64, Form) -> Result<Stage<Grid>, FdError>,
+        stage: MakeStage<T, F>,
     ) -> Result<Fd<T>, FdError> {
         let boundaries: [Boundary; F] = std::array::from_fn(|f| self.boundary(f));
         let mut builder = Builder::<T, F, 0>::new(mesh, boundaries.each_ref(), Order::Sixth)?;
