@@ -1,7 +1,8 @@
 //! finegrain: fine-grained parallel time stepping on multi-core machines.
 //!
 //! This package is the command line, the scene catalogue and the reports. The framework
-//! ([`framework`]) and the numerical methods ([`lbm`], [`sph`]) are crates of their own, re-exported here.
+//! ([`framework`]) and the numerical methods ([`fd`], [`lbm`], [`sph`]) are crates of their own,
+//! re-exported here.
 //!
 //! # Example
 //! A scene of the catalogue, for a few steps:
@@ -25,6 +26,7 @@ pub mod report;
 pub mod scene;
 pub mod trace;
 
+pub use finegrain_fd as fd;
 pub use finegrain_framework as framework;
 pub use finegrain_lbm as lbm;
 pub use finegrain_sph as sph;

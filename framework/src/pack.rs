@@ -41,14 +41,23 @@ pub trait Pack:
         Self::splat(self.simd(), value)
     }
 
+    /// The absolute value of each.
+    fn abs(self) -> Self;
+
+    /// The square root of each.
+    fn sqrt(self) -> Self;
+
+    /// The larger of each two. Where one is not a number, either may come out.
+    fn max(self, other: Self) -> Self;
+
+    /// The smaller of each two. Where one is not a number, either may come out.
+    fn min(self, other: Self) -> Self;
+
     /// `from` as whole packs; what is left at its end is dropped.
     fn packs(simd: Self::Simd, from: &[Self::Scalar]) -> &[Self::Vector];
 
     /// As [`Pack::packs`], to be written.
     fn packs_mut(simd: Self::Simd, to: &mut [Self::Scalar]) -> &mut [Self::Vector];
-
-    /// The square root of each.
-    fn sqrt(self) -> Self;
 
     /// What memory holds of a pack.
     type Vector: Copy;
@@ -91,7 +100,7 @@ macro_rules! packed {
     (
         $scalar:ident, $pack:ident, $vector:ident, $lanes:ident, $splat:ident,
         $packs:ident, $packs_mut:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident,
-        $sqrt:ident
+        $abs:ident, $sqrt:ident, $max:ident, $min:ident
     ) => {
         #[doc = concat!("A pack of `", stringify!($scalar), "`.")]
         #[derive(Clone, Copy)]
@@ -121,6 +130,26 @@ macro_rules! packed {
             }
 
             #[inline(always)]
+            fn abs(self) -> Self {
+                Self { simd: self.simd, vector: self.simd.$abs(self.vector) }
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self { simd: self.simd, vector: self.simd.$sqrt(self.vector) }
+            }
+
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                Self { simd: self.simd, vector: self.simd.$max(self.vector, other.vector) }
+            }
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                Self { simd: self.simd, vector: self.simd.$min(self.vector, other.vector) }
+            }
+
+            #[inline(always)]
             fn packs(_: S, from: &[$scalar]) -> &[S::$vector] {
                 S::$packs(from).0
             }
@@ -128,11 +157,6 @@ macro_rules! packed {
             #[inline(always)]
             fn packs_mut(_: S, to: &mut [$scalar]) -> &mut [S::$vector] {
                 S::$packs_mut(to).0
-            }
-
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                Self { simd: self.simd, vector: self.simd.$sqrt(self.vector) }
             }
 
             #[inline(always)]
@@ -203,7 +227,10 @@ packed!(
     mul_f32s,
     div_f32s,
     neg_f32s,
-    sqrt_f32s
+    abs_f32s,
+    sqrt_f32s,
+    max_f32s,
+    min_f32s
 );
 packed!(
     f64,
@@ -218,14 +245,17 @@ packed!(
     mul_f64s,
     div_f64s,
     neg_f64s,
-    sqrt_f64s
+    abs_f64s,
+    sqrt_f64s,
+    max_f64s,
+    min_f64s
 );
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// `y = sqrt((2 x + y)^2) / (1 - x y)` over whole packs.
+    /// `y = sqrt(|q - x|) - max(q, x)` with `q = (2 x + y) / (1 - x y)`, over whole packs.
     struct Task<'a, T> {
         x: &'a [T],
         y: &'a mut [T],
@@ -241,8 +271,9 @@ mod tests {
             let x = T::Pack::<S>::packs(simd, self.x);
             for (y, &x) in T::Pack::<S>::packs_mut(simd, self.y).iter_mut().zip(x) {
                 let (a, b) = (T::Pack::<S>::of(simd, x), T::Pack::<S>::of(simd, *y));
-                let above = a * T::of(2.0) + b;
-                *y = ((above * above).sqrt() / (-(a * b) + T::one())).vector();
+                let quotient = (a * T::of(2.0) + b) / (-(a * b) + T::one());
+                let (greater, less) = (quotient.max(a), quotient.min(a));
+                *y = ((greater - less).abs().sqrt() - greater).vector();
             }
             lanes
         }
@@ -253,8 +284,8 @@ mod tests {
         let y: Vec<T> = x.iter().map(|x| x.sin() * T::of(0.7)).collect();
         let mut expected = y.clone();
         for (y, &x) in expected.iter_mut().zip(&x) {
-            let above = x * T::of(2.0) + *y;
-            *y = (above * above).sqrt() / (-(x * *y) + T::one());
+            let quotient = (x * T::of(2.0) + *y) / (-(x * *y) + T::one());
+            *y = (quotient - x).abs().sqrt() - quotient.max(x);
         }
         let mut now = y.clone();
         let lanes = pulp::Arch::new().dispatch(Task { x: &x, y: &mut now });

@@ -57,6 +57,9 @@ pub enum SceneError {
     /// The method refused the model.
     #[error(transparent)]
     Lbm(#[from] finegrain_lbm::LbmError),
+    /// The method refused the model.
+    #[error(transparent)]
+    Fd(#[from] finegrain_fd::FdError),
     /// The particles cannot be placed.
     #[error(transparent)]
     Packing(#[from] finegrain_sph::packing::PackingError),

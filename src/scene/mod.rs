@@ -3,6 +3,8 @@
 //! A scene's physics (geometry, fluid, forcing, reference) is in a file of its own; how a method
 //! takes part is in a folder of the method's.
 
+pub mod advection;
+pub mod burgers;
 pub mod cavity;
 pub mod channel;
 pub mod channel_cylinder;
@@ -11,6 +13,8 @@ pub mod dam_break;
 pub mod double_shear_layer;
 pub mod drop;
 pub mod error;
+pub mod fd;
+pub mod heat;
 pub mod hydrostatic_tank;
 pub mod lbm;
 pub mod noh;
@@ -26,7 +30,10 @@ pub mod sphere_array;
 pub mod standing_wave;
 pub mod tank;
 pub mod taylor_green;
+pub mod toro;
+pub mod wave;
 pub mod womersley;
+pub mod zalesak;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -165,6 +172,10 @@ impl Method {
     const fn lbm(parameters: fn() -> Vec<Parameter>, prepare: Prepare) -> Self {
         Self { name: "lbm", parameters, prepare }
     }
+
+    const fn fd(parameters: fn() -> Vec<Parameter>, prepare: Prepare) -> Self {
+        Self { name: "fd", parameters, prepare }
+    }
 }
 
 /// An entry of the catalogue.
@@ -228,7 +239,10 @@ pub const SCENES: &[Scene] = &[
     Scene {
         name: "sod",
         summary: "shock tube of an ideal gas (Sod 1978), 1-D or 2-D",
-        methods: &[Method::sph(sph::sod::parameters, sph::sod::prepare)],
+        methods: &[
+            Method::sph(sph::sod::parameters, sph::sod::prepare),
+            Method::fd(fd::sod::parameters, fd::sod::prepare),
+        ],
     },
     Scene {
         name: "noh",
@@ -289,6 +303,36 @@ pub const SCENES: &[Scene] = &[
         name: "shear-wave",
         summary: "a wave of shear that viscosity lets decay in a periodic box",
         methods: &[Method::lbm(lbm::shear_wave::parameters, lbm::shear_wave::prepare)],
+    },
+    Scene {
+        name: "toro",
+        summary: "Riemann problems that are hard on a method (Toro 1999)",
+        methods: &[Method::fd(fd::toro::parameters, fd::toro::prepare)],
+    },
+    Scene {
+        name: "heat",
+        summary: "a wave of temperature that levels out in a box, 1-D to 3-D",
+        methods: &[Method::fd(fd::heat::parameters, fd::heat::prepare)],
+    },
+    Scene {
+        name: "wave",
+        summary: "a standing wave in a box, 1-D to 3-D",
+        methods: &[Method::fd(fd::wave::parameters, fd::wave::prepare)],
+    },
+    Scene {
+        name: "advection",
+        summary: "a shape that is carried through a periodic box, 1-D or 2-D",
+        methods: &[Method::fd(fd::advection::parameters, fd::advection::prepare)],
+    },
+    Scene {
+        name: "zalesak",
+        summary: "a slotted disk that is carried around (Zalesak 1979)",
+        methods: &[Method::fd(fd::zalesak::parameters, fd::zalesak::prepare)],
+    },
+    Scene {
+        name: "burgers",
+        summary: "a wave that steepens until viscosity holds it (Basdevant et al. 1986)",
+        methods: &[Method::fd(fd::burgers::parameters, fd::burgers::prepare)],
     },
 ];
 

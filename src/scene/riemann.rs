@@ -1,5 +1,7 @@
 //! Exact solution of the Riemann problem of an ideal gas (Toro 1999, chapter 4).
 
+use super::report::Report;
+
 /// State of a gas that moves along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gas {
@@ -82,6 +84,39 @@ impl Riemann {
         // The right side is the left one in a mirror.
         let mirror = |gas: Gas| Gas { velocity: -gas.velocity, ..gas };
         mirror(self.side(mirror(self.right), -x_over_t, pressure, -velocity))
+    }
+
+    /// The gas at `x` from the diaphragm, m, at a time, s, 0 too.
+    pub fn around(&self, x: f64, time: f64) -> Gas {
+        if time > 0.0 {
+            self.at(x / time)
+        } else if x < 0.0 {
+            self.left
+        } else {
+            self.right
+        }
+    }
+
+    /// Judges a gas: a length that it stands for, what it is and what it should be. `density_l1`, `velocity_l1`
+    /// and `pressure_l1`: the integral of the error over that of what should be.
+    pub fn judge(&self, report: &mut Report, gas: impl Iterator<Item = (f64, Gas, Gas)>) {
+        let mut l1 = [[0.0; 2]; 3];
+        for (length, gas, exact) in gas {
+            let pairs = [
+                (gas.density, exact.density),
+                (gas.velocity, exact.velocity),
+                (gas.pressure, exact.pressure),
+            ];
+            for (sums, (value, exact)) in l1.iter_mut().zip(pairs) {
+                sums[0] += (value - exact).abs() * length;
+                sums[1] += exact.abs() * length;
+            }
+        }
+        for (name, [error, norm]) in
+            ["density_l1", "velocity_l1", "pressure_l1"].into_iter().zip(l1)
+        {
+            report.error(name, error / norm);
+        }
     }
 
     /// The gas left of the contact.

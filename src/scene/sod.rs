@@ -6,6 +6,7 @@
 //! Until t = 0.28 nothing from the second diaphragm gets to where errors are measured, from 0 to 1.
 
 use super::parameter::{Parameter, Parameters};
+use super::report::Report;
 use super::riemann::{Gas, Riemann};
 
 /// Where the diaphragm is, m.
@@ -25,7 +26,7 @@ pub const PARAMETERS: [Parameter; 2] = [
         "resolution",
         400,
         [36, 100_000],
-        "particles along the tube from 0 to 1, eight ninths of them in the dense gas (2-D: eight \
+        "points along the tube from 0 to 1; of particles eight ninths are in the dense gas (2-D: eight \
          elevenths)",
     ),
 ];
@@ -50,14 +51,18 @@ impl Sod {
 
     /// The gas at `x` in [0, 1], m, at `time`.
     pub fn exact(&self, x: f64, time: f64) -> Gas {
-        let x = x - DIAPHRAGM;
-        if time > 0.0 {
-            TUBE.at(x / time)
-        } else if x < 0.0 {
-            TUBE.left
-        } else {
-            TUBE.right
-        }
+        TUBE.around(x - DIAPHRAGM, time)
+    }
+
+    /// Judges gas from 0 to 1 at a time, s: where it is, m, the length that it stands for, m, and what it is;
+    /// see [`Riemann::judge`].
+    pub fn judge(
+        &self,
+        report: &mut Report,
+        time: f64,
+        gas: impl Iterator<Item = (f64, f64, Gas)>,
+    ) {
+        TUBE.judge(report, gas.map(|(x, length, gas)| (length, gas, self.exact(x, time))));
     }
 }
 

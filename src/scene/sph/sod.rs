@@ -10,6 +10,7 @@ use super::{Flow, SphScene, gas};
 use crate::figure::Axis;
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
+use crate::scene::riemann::Gas;
 use crate::scene::sod::{self, DIAPHRAGM, Sod, TUBE};
 use crate::scene::{Precision, Report, SceneError};
 
@@ -66,8 +67,7 @@ fn build<T: Real, P: Real>(
         positions,
     };
     let densities: Vec<_> = gases.iter().map(|gas| gas.density).collect();
-    let energy =
-        |gas: &crate::scene::riemann::Gas| gas.pressure / ((TUBE.heat_ratio - 1.0) * gas.density);
+    let energy = |gas: &Gas| gas.pressure / ((TUBE.heat_ratio - 1.0) * gas.density);
     let energies: Vec<_> = gases.iter().map(energy).collect();
     // A little longer than the thinnest gas needs: summation is uneven where gases meet.
     let longest = 1.15 * thinnest.max(8f64.sqrt() * spacing);
@@ -124,22 +124,12 @@ impl<T: Real, P: Real> Flow<T, P> for Tube {
         if summary.time == 0.0 {
             return;
         }
-        let mut l1 = [[0.0; 2]; 3];
-        for [x, density, velocity, energy] in self.particles(simulation, fields) {
-            let exact = self.scene.exact(x, summary.time);
-            let pressure = (TUBE.heat_ratio - 1.0) * density * energy;
-            let pairs =
-                [(density, exact.density), (velocity, exact.velocity), (pressure, exact.pressure)];
-            for (sums, (value, exact)) in l1.iter_mut().zip(pairs) {
-                sums[0] += (value - exact).abs() / density;
-                sums[1] += exact.abs() / density;
-            }
-        }
-        for (name, [error, norm]) in
-            ["density_l1", "velocity_l1", "pressure_l1"].into_iter().zip(l1)
-        {
-            report.error(name, error / norm);
-        }
+        let gas =
+            self.particles(simulation, fields).into_iter().map(|[x, density, velocity, energy]| {
+                let pressure = (TUBE.heat_ratio - 1.0) * density * energy;
+                (x, 1.0 / density, Gas { density, velocity, pressure })
+            });
+        self.scene.judge(report, summary.time, gas);
     }
 
     fn title(&self) -> String {

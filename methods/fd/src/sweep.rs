@@ -1,0 +1,341 @@
+//! The stage that evaluates an equation on the rows of a tile.
+
+use finegrain_framework::pack::Pack;
+use finegrain_framework::space::Grid;
+use finegrain_framework::space::grid::{self, RowsMut};
+use finegrain_framework::{
+    ColumnId, Fault, Handle, Moment, Near, Part, Rate, RateStage, Rates, Real, State,
+};
+
+use crate::around::{Coefficients, Weights};
+use crate::equation::Equation;
+use crate::line::{Ends, Line};
+use crate::row::{Advance, Cross, Row, Window};
+
+/// What becomes of the rate of change that an equation gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// It is written, for an integrator.
+    Rate,
+    /// Euler's method at once: `u + dt u'`, the next state.
+    Euler,
+    /// Of an equation of second order in time: `2 u_n - u_{n-1} + dt^2 u''`, the next state in the
+    /// place of the last.
+    TwoStep,
+    /// The state before the first, in the place of `-dt u'_0`: `u_0 - dt u'_0 + dt^2/2 u''`.
+    Before,
+}
+
+/// Evaluates an equation of `F` unknowns and `G` given fields, reading `R` points to either side, in
+/// lines of `N` and, next to closed ends, `M` points.
+pub(crate) struct Sweep<
+    T: Real,
+    E,
+    const F: usize,
+    const G: usize,
+    const R: usize,
+    const N: usize,
+    const M: usize,
+> {
+    pub equation: E,
+    pub unknowns: [State<T>; F],
+    pub given: [State<T>; G],
+    pub out: [Rate<T>; F],
+    pub form: Form,
+    /// Of each unknown and axis; `None` where there is no axis.
+    pub lines: [[Option<Line<T>>; 3]; F],
+    /// Of given fields, of which nothing is asked at closed ends.
+    pub given_lines: [Option<Line<T>>; 3],
+    pub coefficients: Coefficients<T, R>,
+    /// Positions along each axis.
+    pub positions: [Vec<f64>; 3],
+}
+
+/// Working memory of one worker.
+pub(crate) struct Scratch<T> {
+    /// Rows beyond the ends of y and z: of each field, axis and end, from the end outwards.
+    ghosts: Vec<Vec<T>>,
+    /// What is given on the boundary: of each unknown, at the two ends of x, and along a row at the end
+    /// of y and z that is near.
+    data: Vec<Vec<T>>,
+    window: Vec<Window<T>>,
+}
+
+impl<T> Default for Scratch<T> {
+    fn default() -> Self {
+        Self { ghosts: Vec::new(), data: Vec::new(), window: Vec::new() }
+    }
+}
+
+/// Deepest ghost point.
+const DEEPEST: usize = 4;
+
+/// Where a ghost row is kept.
+fn ghost_row(field: usize, axis: usize, end: usize, depth: usize) -> usize {
+    ((field * 2 + axis - 1) * 2 + end) * DEEPEST + depth
+}
+
+impl<T: Real, E, const F: usize, const G: usize, const R: usize, const N: usize, const M: usize>
+    Sweep<T, E, F, G, R, N, M>
+where
+    E: Equation<T, F, G>,
+{
+    #[inline(always)]
+    fn run<V: Pack<Scalar = T>>(&self, simd: V::Simd, work: Work<'_, '_, T, F>) {
+        let Work { near, out, scratch, moment } = work;
+        let nx = near.domain().shape()[0];
+        let axes = self.lines[0].iter().flatten().count();
+        let weights = Weights::<V, R>::new(simd, axes, &self.coefficients);
+        let single =
+            Weights::<T::Pack<pulp::Scalar>, R>::new(pulp::Scalar, axes, &self.coefficients);
+        let dt = T::of(moment.dt);
+        let advance = match self.form {
+            Form::Rate => Advance::Rate,
+            Form::Euler => Advance::Euler(dt),
+            Form::TwoStep => Advance::TwoStep(dt * dt),
+            Form::Before => Advance::Before(T::of(0.5) * dt * dt),
+        };
+        scratch.ghosts.resize_with((F + G) * 4 * DEEPEST, Vec::new);
+        scratch.data.resize_with(F * 3, Vec::new);
+        scratch.window.resize(F + G, crate::row::EMPTY.map(|()| T::zero()));
+        let closed = self.lines[0][0].as_ref().map_or(0, Line::closed);
+        let fields: [_; F] = std::array::from_fn(|f| Rows::new(near, self.unknowns[f]));
+        let given: [_; G] = std::array::from_fn(|g| Rows::new(near, self.given[g]));
+        for (j, k) in near.sub_domain().rows() {
+            self.fill(near, scratch, (j, k), moment.stage_time);
+            let Scratch { ghosts, data, window } = &mut *scratch;
+            let row = Row {
+                sweep: self,
+                unknowns: std::array::from_fn(|f| self.cross(&fields[f], ghosts, data, f, (j, k))),
+                given: std::array::from_fn(|g| self.cross(&given[g], ghosts, data, F + g, (j, k))),
+                data,
+                advance,
+                dt,
+                closed,
+            };
+            let mut out = out.each_mut().map(|rows| rows.row(j, k));
+            if row.is_open() && nx - 2 * closed >= V::LANES.max(2 * R) {
+                row.points(&single, window, [0, closed], &mut out);
+                row.packs::<V>(simd, &weights, window, [closed, nx - closed], &mut out);
+                row.points(&single, window, [nx - closed, nx], &mut out);
+            } else {
+                row.points(&single, window, [0, nx], &mut out);
+            }
+        }
+    }
+
+    /// Line `a` of field `f`, unknowns first.
+    #[inline(always)]
+    pub fn line(&self, f: usize, a: usize) -> Option<&Line<T>> {
+        if f < F { self.lines[f][a].as_ref() } else { self.given_lines[a].as_ref() }
+    }
+
+    fn column(&self, f: usize) -> State<T> {
+        if f < F { self.unknowns[f] } else { self.given[f - F] }
+    }
+
+    /// Fills rows beyond the ends, and what is given on the boundary, around row `(j, k)`.
+    fn fill(
+        &self,
+        near: &Near<'_, Grid>,
+        scratch: &mut Scratch<T>,
+        (j, k): (usize, usize),
+        time: f64,
+    ) {
+        for f in 0..F + G {
+            for a in 0..3 {
+                let Some(line) = self.line(f, a) else { continue };
+                match &line.ends {
+                    Ends::Periodic => {}
+                    _ if a == 0 => {
+                        if f < F {
+                            let data = &mut scratch.data[f * 3];
+                            data.clear();
+                            data.extend(
+                                [0, 1].map(|end| line.given(self, a, end, [0, j, k], time)),
+                            );
+                        }
+                    }
+                    Ends::Closed(_) => {
+                        if f < F
+                            && let Some((_, end)) = line.row([0, j, k][a])
+                        {
+                            let data = &mut scratch.data[f * 3 + a];
+                            data.clear();
+                            let points = 0..self.positions[0].len();
+                            data.extend(points.map(|x| line.given(self, a, end, [x, j, k], time)));
+                        }
+                    }
+                    Ends::Ghosts(ghosts) => {
+                        for (end, ghosts) in ghosts.iter().enumerate() {
+                            let at = line.counted_from([0, j, k][a], end);
+                            for depth in 0..R.saturating_sub(at) {
+                                let ghost = ghosts[depth];
+                                let mut source = [j as isize, k as isize];
+                                source[a - 1] = line.counted_from(ghost.source, end) as isize;
+                                let from = near.rows(self.column(f)).row(source[0], source[1]);
+                                let to = &mut scratch.ghosts[ghost_row(f, a, end, depth)];
+                                to.clear();
+                                to.extend(from.iter().enumerate().map(|(x, &u)| {
+                                    ghost.keep * u
+                                        + ghost.data * line.given(self, a, end, [x, j, k], time)
+                                }));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The rows around row `(j, k)` of field `f`, unknowns first.
+    fn cross<'a>(
+        &'a self,
+        rows: &Rows<'a, T>,
+        ghosts: &'a [Vec<T>],
+        data: &'a [Vec<T>],
+        f: usize,
+        (j, k): (usize, usize),
+    ) -> Cross<'a, T, M> {
+        let (y, z) = (j as isize, k as isize);
+        let mut cross = Cross { here: rows.row(y, z), lines: [[&[]; M]; 2], closed: [None; 2] };
+        for a in 1..3 {
+            let Some(line) = self.line(f, a) else { continue };
+            let at = [0, j, k][a];
+            let mut range = -(R as isize)..R as isize + 1;
+            if let Some((row, _)) = line.row(at) {
+                range = row.from..row.to();
+                if f < F {
+                    cross.closed[a - 1] = Some((row, &data[f * 3 + a][..]));
+                }
+            }
+            for by in range {
+                let beyond = at as isize + by;
+                let past = [-1 - beyond, beyond - line.points as isize];
+                let end = past.iter().position(|&past| past >= 0);
+                cross.lines[a - 1][(by + (M / 2) as isize) as usize] = match (end, &line.ends) {
+                    (Some(end), Ends::Ghosts(_)) => {
+                        &ghosts[ghost_row(f, a, end, past[end] as usize)]
+                    }
+                    (Some(_), Ends::Closed(_)) => &[],
+                    _ if a == 1 => rows.row(y + by, z),
+                    _ => rows.row(y, z + by),
+                };
+            }
+        }
+        cross
+    }
+}
+
+/// Rows of one column, of which those of the tile itself are found without a search.
+struct Rows<'a, T> {
+    own: Part<'a, T>,
+    near: grid::Rows<'a, T>,
+    /// Points of a row.
+    length: usize,
+    /// First row and plane of the tile, and how many.
+    first: [isize; 2],
+    count: [isize; 2],
+}
+
+impl<'a, T: Real> Rows<'a, T> {
+    fn new(near: &Near<'a, Grid>, column: State<T>) -> Self {
+        let mut rows = near.sub_domain().rows().map(|(j, k)| [j as isize, k as isize]);
+        let first = rows.next().unwrap_or_default();
+        let last = rows.last().unwrap_or(first);
+        let count = [last[0] - first[0] + 1, last[1] - first[1] + 1];
+        let length = near.domain().shape()[0];
+        Self { own: near.state(column).own(), near: near.rows(column), length, first, count }
+    }
+
+    #[inline]
+    fn row(&self, j: isize, k: isize) -> &'a [T] {
+        let [y, z] = [j - self.first[0], k - self.first[1]];
+        if (0..self.count[0]).contains(&y) && (0..self.count[1]).contains(&z) {
+            return &self.own.span(z as usize)[y as usize * self.length..][..self.length];
+        }
+        self.near.row(j, k)
+    }
+}
+
+impl<T: Real> Line<T> {
+    /// What is given at an end of line `axis`, at the foot of point `[x, j, k]`.
+    fn given<E, const F: usize, const G: usize, const R: usize, const N: usize, const M: usize>(
+        &self,
+        sweep: &Sweep<T, E, F, G, R, N, M>,
+        axis: usize,
+        end: usize,
+        point: [usize; 3],
+        time: f64,
+    ) -> T {
+        let mut position = [0, 1, 2].map(|a| sweep.positions[a][point[a]]);
+        position[axis] = self.limits[end];
+        T::of(self.conditions[end].data().at(position, time))
+    }
+}
+
+/// A tile's share.
+struct Work<'s, 'n, T, const F: usize> {
+    near: &'s Near<'n, Grid>,
+    out: &'s mut [RowsMut<'n, T>; F],
+    scratch: &'s mut Scratch<T>,
+    moment: &'s Moment,
+}
+
+/// To be compiled for every instruction set.
+struct Task<
+    's,
+    'n,
+    T: Real,
+    E,
+    const F: usize,
+    const G: usize,
+    const R: usize,
+    const N: usize,
+    const M: usize,
+> {
+    sweep: &'s Sweep<T, E, F, G, R, N, M>,
+    work: Work<'s, 'n, T, F>,
+}
+
+impl<T: Real, E, const F: usize, const G: usize, const R: usize, const N: usize, const M: usize>
+    pulp::WithSimd for Task<'_, '_, T, E, F, G, R, N, M>
+where
+    E: Equation<T, F, G>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        self.sweep.run::<T::Pack<S>>(simd, self.work);
+    }
+}
+
+impl<T: Real, E, const F: usize, const G: usize, const R: usize, const N: usize, const M: usize>
+    RateStage<Grid> for Sweep<T, E, F, G, R, N, M>
+where
+    E: Equation<T, F, G>,
+{
+    type Scratch = Scratch<T>;
+
+    fn name(&self) -> &str {
+        self.equation.name()
+    }
+
+    fn writes(&self) -> Vec<ColumnId> {
+        self.out.iter().map(|rate| rate.id()).collect()
+    }
+
+    fn rate(
+        &self,
+        near: &Near<'_, Grid>,
+        rates: &mut Rates<'_, Grid>,
+        scratch: &mut Scratch<T>,
+        moment: &Moment,
+    ) -> Result<(), Fault> {
+        let mut out = self.out.map(|rate| rates.rows(rate));
+        let work = Work { near, out: &mut out, scratch, moment };
+        pulp::Arch::new().dispatch(Task { sweep: self, work });
+        Ok(())
+    }
+}

@@ -1,0 +1,122 @@
+//! Bad input gets an error that names what and where, and never a panic.
+
+use finegrain_fd::{
+    Advection, Boundary, Burgers, Condition, Drift, Face, FdError, Gas, GasEnd, GasState, Heat,
+    Mesh, Order, Side, Wave,
+};
+use finegrain_framework::Integrator;
+
+fn said<M>(result: Result<M, FdError>) -> String {
+    match result {
+        Ok(_) => panic!("must be refused"),
+        Err(error) => error.to_string(),
+    }
+}
+
+fn heat() -> Heat {
+    Heat {
+        diffusivity: 1.0,
+        order: Order::Fourth,
+        integrator: Integrator::Rk4,
+        boundary: Boundary::all(Condition::dirichlet(0.0)),
+    }
+}
+
+fn closed(points: usize) -> Mesh {
+    Mesh::new([Side::periodic(32, 0.0, 1.0), Side::ends(points, 0.0, 1.0)])
+}
+
+fn of_heat(heat: &Heat, mesh: &Mesh) -> String {
+    said(heat.model::<f64>(mesh, 1e-6, &|_| 0.0))
+}
+
+#[test]
+fn a_time_step_past_the_limit() {
+    let (heat, mesh) = (heat(), closed(32));
+    let limit = heat.time_step_limit(&mesh).unwrap();
+    let text = said(heat.model::<f64>(&mesh, 1.01 * limit, &|_| 0.0));
+    let named = format!("at most {limit:e} s");
+    assert!(text.contains(&named) && text.contains("rk4") && text.contains("order 4"), "{text}");
+    assert!(heat.model::<f64>(&mesh, limit, &|_| 0.0).is_ok());
+    let text = said(heat.model::<f64>(&mesh, f64::NAN, &|_| 0.0));
+    assert!(text.contains("time_step is NaN"), "{text}");
+    let boundary = Boundary::all(Condition::Outflow);
+    let wave = Wave { speed: 2.0, order: Order::Eighth, boundary: boundary.clone() };
+    let mesh = Mesh::new([Side::periodic(32, 0.0, 1.0)]);
+    let text = said(wave.model::<f32>(&mesh, 0.1, &|_| 0.0, &|_| 0.0));
+    assert!(text.contains("leapfrog") && text.contains("order 8"), "{text}");
+    let advection = Advection { face: Face::Weno5, integrator: Integrator::Euler, boundary };
+    let text = said(advection.model::<f64>(&mesh, 1e-6, &|_| [1.0; 3], &|_| 0.0));
+    assert!(text.contains("weno5 with euler") && text.contains("not stable"), "{text}");
+}
+
+#[test]
+fn numbers_outside_their_range() {
+    let heat = Heat { diffusivity: -1.0, ..heat() };
+    assert!(of_heat(&heat, &closed(32)).contains("diffusivity is -1"));
+    let wave = Wave { speed: 0.0, order: Order::Second, boundary: heat.boundary.clone() };
+    assert!(said(wave.time_step_limit(&closed(32))).contains("speed is 0"));
+    let burgers = Burgers {
+        viscosity: f64::INFINITY,
+        face: Face::Weno5,
+        integrator: Integrator::SspRk3,
+        boundary: heat.boundary,
+    };
+    assert!(said(burgers.time_step_limit(&closed(32), 1.0)).contains("viscosity is inf"));
+}
+
+#[test]
+fn meshes_that_do_not_go_with_the_scheme() {
+    assert!(of_heat(&heat(), &closed(9)).contains("9 points along y; there must be at least 10"));
+    let none = Mesh::new([Side::periodic(0, 0.0, 1.0)]);
+    assert!(of_heat(&heat(), &none).contains("0 points along x"));
+    let reversed = Mesh::new([Side::periodic(32, 1.0, 0.5)]);
+    assert!(of_heat(&heat(), &reversed).contains("along x the mesh goes from 1 m to 0.5 m"));
+    let eighth = Heat { order: Order::Eighth, ..heat() };
+    assert!(of_heat(&eighth, &closed(64)).contains("no closure of order 8"));
+    let boundary = Boundary::all(Condition::Outflow);
+    let advection = Advection { face: Face::Weno5, integrator: Integrator::SspRk3, boundary };
+    let text = said(advection.model::<f64>(&closed(32), 1e-6, &|_| [1.0; 3], &|_| 0.0));
+    assert!(text.contains("along y") && text.contains("middle of cells"), "{text}");
+}
+
+#[test]
+fn conditions_that_make_no_sense() {
+    let with = |condition: Condition| {
+        let mut heat = heat();
+        heat.boundary.0[1][1] = condition;
+        of_heat(&heat, &closed(32))
+    };
+    let text = with(Condition::robin(-1.0, 0.5, 0.0));
+    assert!(text.contains("upper end of y") && text.contains("value is -1"), "{text}");
+    assert!(with(Condition::robin(1.0, 0.0, 0.0)).contains("slope is 0"));
+    assert!(with(Condition::dirichlet(f64::NAN)).contains("NaN"));
+    assert!(with(Condition::Outflow).contains("second derivative"));
+    let (velocity, order, integrator) = ([0.0, 1.0, 0.0], Order::Fourth, Integrator::Rk4);
+    let mut drift = Drift { velocity, order, integrator, boundary: heat().boundary };
+    let text = said(drift.model::<f64>(&closed(32), 1e-6, &|_| 0.0));
+    assert!(text.contains("upper end of y") && text.contains("flows in"), "{text}");
+    drift.boundary.0[1][1] = Condition::Outflow;
+    assert!(drift.model::<f64>(&closed(32), 1e-6, &|_| 0.0).is_ok());
+}
+
+#[test]
+fn a_start_that_is_not_a_number() {
+    let text = said(heat().model::<f64>(&closed(32), 1e-6, &|x| 1.0 / (x[0] - 0.5)));
+    assert!(text.contains("initial temperature at [0.5, 0.0, 0.0]"), "{text}");
+}
+
+#[test]
+fn a_gas_that_is_none() {
+    let gas = Gas { heat_ratio: 1.4, courant: 0.4, ends: [[GasEnd::Open; 2]; 2] };
+    let air = GasState { density: 1.0, velocity: [0.0; 3], pressure: 1.0 };
+    let line = Mesh::new([Side::cells(20, 0.0, 1.0)]);
+    let of = |gas: Gas, state: GasState, mesh: &Mesh| said(gas.model::<f64>(mesh, &|_| state));
+    let text = of(Gas { courant: 0.6, ..gas }, air, &line);
+    assert!(text.contains("courant is 0.6") && text.contains("at most 0.5"), "{text}");
+    assert!(of(Gas { heat_ratio: 1.0, ..gas }, air, &line).contains("heat_ratio is 1"));
+    let text = of(gas, GasState { pressure: 0.0, ..air }, &line);
+    assert!(text.contains("initial pressure at [0.025") && text.contains("above zero"), "{text}");
+    let space = Mesh::new([Side::cells(9, 0.0, 1.0); 3]);
+    assert!(of(gas, air, &space).contains("directions of a gas is 3"));
+}

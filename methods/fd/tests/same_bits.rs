@@ -1,0 +1,123 @@
+//! The same problem gives the same bits for any number of workers, schedule and hand-out order, and after a
+//! restart.
+
+use finegrain_fd::{
+    Advection, Boundary, Compiled, Condition, Data, Face, Fd, Gas, GasEnd, GasState, Heat, Mesh,
+    Order, Side, Wave,
+};
+use finegrain_framework::{HandOut, Integrator, Schedule, Settings, Simulation};
+
+/// Conditions that vary along every end of a brick of which two directions are closed.
+fn brick() -> (Mesh, Boundary) {
+    let mut boundary = Boundary::all(Condition::neumann(0.1));
+    boundary.0[0][1] = Condition::Dirichlet(Data::varying(|x, t| (x[1] + x[2] + t).sin()));
+    boundary.0[1][0] = Condition::robin(1.0, 0.5, Data::varying(|x, t| (x[0] - t).cos()));
+    let sides = [Side::ends(37, 0.0, 1.0), Side::ends(22, 0.0, 0.7), Side::periodic(19, 0.0, 0.5)];
+    (Mesh::new(sides), boundary)
+}
+
+fn start(x: [f64; 3]) -> f64 {
+    (3.0 * x[0]).sin() + (5.0 * x[1] * x[2]).cos()
+}
+
+fn heat<T: Compiled>(order: Order, integrator: Integrator) -> Fd<T> {
+    let (mesh, boundary) = brick();
+    let heat = Heat { diffusivity: 0.2, order, integrator, boundary };
+    let dt = 0.9 * heat.time_step_limit(&mesh).unwrap();
+    heat.model(&mesh, dt, &start).unwrap()
+}
+
+fn wave<T: Compiled>(order: Order) -> Fd<T> {
+    let (mesh, boundary) = brick();
+    let wave = Wave { speed: 0.2, order, boundary };
+    let dt = 0.9 * wave.time_step_limit(&mesh).unwrap();
+    wave.model(&mesh, dt, &start, &|x| x[0]).unwrap()
+}
+
+fn advection<T: Compiled>() -> Fd<T> {
+    let mut boundary = Boundary::all(Condition::Outflow);
+    boundary.0[0][0] = Condition::Dirichlet(Data::varying(|x, t| (x[1] + t).sin()));
+    let (face, integrator) = (Face::Weno5Z, Integrator::SspRk3);
+    let advection = Advection { face, integrator, boundary };
+    let sides =
+        [Side::cells(37, 0.0, 1.0), Side::cells(22, 0.0, 0.7), Side::periodic(19, 0.0, 0.5)];
+    let velocity = |x: [f64; 3]| [1.0 + x[1], 0.5 * x[0], -0.3];
+    advection.model(&Mesh::new(sides), 2e-3, &velocity, &start).unwrap()
+}
+
+fn gas<T: Compiled>() -> Fd<T> {
+    let ends = [[GasEnd::Open, GasEnd::Wall], [GasEnd::Wall, GasEnd::Open]];
+    let gas = Gas { heat_ratio: 1.4, courant: 0.45, ends };
+    let mesh = Mesh::new([Side::cells(37, 0.0, 1.0), Side::cells(29, 0.0, 0.8)]);
+    let state = |x: [f64; 3]| {
+        let pressure = if x[0] + 0.5 * x[1] < 0.5 { 100.0 } else { 0.1 };
+        GasState { density: 1.0 + 0.2 * x[1], velocity: [0.1, -0.2, 0.0], pressure }
+    };
+    gas.model(&mesh, &state).unwrap()
+}
+
+fn same_bits<T: Compiled>(model: impl Fn() -> Fd<T>) {
+    let hash = |settings: Settings| {
+        let mut simulation = Simulation::new(model().model, settings).unwrap();
+        simulation.advance(7).unwrap();
+        simulation.state_hash()
+    };
+    let serial = Settings { schedule: Schedule::Serial, workers: 1, ..Settings::default() };
+    let expected = hash(serial);
+    for schedule in Schedule::ALL {
+        for workers in [1, 3] {
+            for hand_out in [HandOut::Natural, HandOut::Shuffled { seed: 3 }] {
+                let settings = Settings { schedule, workers, hand_out, ..Settings::default() };
+                assert_eq!(hash(settings.clone()), expected, "{settings:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn of_heat() {
+    same_bits(|| heat::<f64>(Order::Second, Integrator::Euler));
+    same_bits(|| heat::<f64>(Order::Sixth, Integrator::SspRk3));
+    same_bits(|| heat::<f32>(Order::Fourth, Integrator::Rk2));
+}
+
+#[test]
+fn of_waves() {
+    same_bits(|| wave::<f64>(Order::Fourth));
+    same_bits(|| wave::<f32>(Order::Sixth));
+}
+
+#[test]
+fn of_what_flows() {
+    same_bits(advection::<f64>);
+    same_bits(gas::<f64>);
+    same_bits(gas::<f32>);
+}
+
+/// From a checkpoint written in the middle, with fields in either set of columns.
+fn restarts<T: Compiled>(model: impl Fn() -> Fd<T>) {
+    let folder = tempfile::tempdir().unwrap();
+    let start = |settings| Simulation::new(model().model, settings).unwrap();
+    let mut whole = start(Settings::default());
+    whole.advance(25).unwrap();
+    for steps in [0, 7, 12] {
+        let path = folder.path().join(format!("{steps}.ckpt"));
+        let mut first = start(Settings::default());
+        first.advance(steps).unwrap();
+        first.save(&path, 1).unwrap();
+        let other = Settings { schedule: Schedule::PeerToPeer, workers: 3, ..Settings::default() };
+        let mut second = start(other);
+        second.restore(&path, 1).unwrap();
+        second.advance(25 - steps).unwrap();
+        assert_eq!(second.state_hash(), whole.state_hash(), "from step {steps}");
+    }
+}
+
+#[test]
+fn after_a_restart() {
+    restarts(|| heat::<f64>(Order::Second, Integrator::Euler));
+    restarts(|| heat::<f64>(Order::Fourth, Integrator::Rk4));
+    restarts(|| wave::<f64>(Order::Sixth));
+    restarts(advection::<f64>);
+    restarts(gas::<f64>);
+}

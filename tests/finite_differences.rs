@@ -1,0 +1,113 @@
+//! The scenes by finite differences: the errors that they report against their references, and how they
+//! fall.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use finegrain::scene::{Orders, Precision, Report, Scene};
+
+fn run(scene: &str, settings: &[(&str, &str)], orders: Orders) -> Report {
+    let scene = Scene::find(scene).unwrap();
+    let parameters = scene.set_for(Some("fd"), settings.iter().copied()).unwrap();
+    scene.prepare(Some("fd"), &parameters, Precision::F64).unwrap().run(orders).unwrap()
+}
+
+fn errors(scene: &str, settings: &[(&str, &str)]) -> BTreeMap<&'static str, f64> {
+    run(scene, settings, Orders::default()).errors
+}
+
+#[test]
+fn heat_levels_out_in_the_order_of_the_laplacian() {
+    for (order, n, design) in [("2", ["16", "32"], 2.0), ("4", ["16", "32"], 4.0)] {
+        let [coarse, fine] =
+            n.map(|n| errors("heat", &[("resolution", n), ("order", order)])["temperature_l2"]);
+        let measured = (coarse / fine).log2();
+        assert!((measured - design).abs() < 0.1, "{order}: {measured}");
+    }
+    for (ends, most) in [("cold", 5e-6), ("insulated", 1.5e-7)] {
+        let error = errors("heat", &[("resolution", "33"), ("ends", ends), ("order", "6")]);
+        assert!(error["temperature_l2"] < most, "{ends}: {error:?}");
+    }
+}
+
+#[test]
+fn waves_keep_their_energy() {
+    for ends in ["periodic", "fixed", "free"] {
+        let errors = errors("wave", &[("ends", ends)]);
+        assert!(errors["energy_drift"] < 1e-12, "{ends}: {errors:?}");
+        assert!(errors["displacement_l2"] < 0.02, "{ends}: {errors:?}");
+    }
+}
+
+#[test]
+fn the_disk_comes_around() {
+    let report = run("zalesak", &[], Orders::default());
+    assert!(report.errors["shape"] < 0.3, "{:?}", report.errors);
+    assert!(report.errors["area"].abs() < 0.02, "{:?}", report.errors);
+    assert!(report.results["overshoot"] < 0.02, "{:?}", report.results);
+    let smeared = errors("zalesak", &[("resolution", "50"), ("face", "upwind1")]);
+    assert!(smeared["shape"] > 1.0, "{smeared:?}");
+}
+
+#[test]
+fn the_largest_slope_of_burgers_equation() {
+    let errors = errors("burgers", &[]);
+    assert!(errors["largest_slope"].abs() < 0.005, "{errors:?}");
+    assert!(errors["slope_time"].abs() < 0.005, "{errors:?}");
+    assert!(errors["velocity_l2"] < 1e-4, "{errors:?}");
+}
+
+#[test]
+fn shocks_are_where_they_should_be() {
+    let errors = errors("sod", &[]);
+    assert!(errors["density_l1"] < 0.005, "{errors:?}");
+    let [line, plane] = ["1", "2"].map(|dim| {
+        let report = run("sod", &[("dim", dim), ("resolution", "100")], Orders::default());
+        report.errors["density_l1"]
+    });
+    assert!((line / plane - 1.0).abs() < 0.05, "{line} {plane}");
+}
+
+#[test]
+fn density_and_pressure_stay_positive_in_all_of_toros_tests() {
+    for (test, most) in [("1", 0.005), ("2", 0.01), ("3", 0.05), ("4", 0.05), ("5", 0.02)] {
+        let report = run("toro", &[("test", test)], Orders::default());
+        assert!(report.results["least_density"] > 0.0, "{test}: {:?}", report.results);
+        assert!(report.results["least_pressure"] > 0.0, "{test}: {:?}", report.results);
+        assert!(report.errors["density_l1"] < most, "{test}: {:?}", report.errors);
+    }
+}
+
+#[test]
+fn a_checkpoint_is_gone_on_from_with_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = [("ends", "fixed"), ("resolution", "40")];
+    let until = |steps, restart, workers| Orders {
+        steps: Some(steps),
+        workers: Some(workers),
+        out: Some(folder.path().join(steps.to_string())),
+        restart,
+        ..Orders::default()
+    };
+    let whole = run("wave", &settings, until(31, None, 1));
+    let half = run("wave", &settings, until(14, None, 2));
+    let file = |extension| {
+        let has_it = |f: &&PathBuf| f.extension().is_some_and(|e| e == extension);
+        half.files.iter().find(has_it).cloned().expect("a file of this kind")
+    };
+    assert!(file("vti").exists() && file("csv").exists());
+    let again = run("wave", &settings, until(31, Some(file("ckpt")), 3));
+    assert_eq!(again.state_hash, whole.state_hash);
+    assert_eq!(again.results, whole.results);
+}
+
+#[test]
+fn a_time_step_past_the_limit_is_refused_with_the_limit() {
+    for scene in ["heat", "wave", "advection", "zalesak", "burgers", "sod", "toro"] {
+        let found = Scene::find(scene).unwrap();
+        let parameters = found.set_for(Some("fd"), [("courant", "1.2")]).unwrap();
+        let said =
+            found.prepare(Some("fd"), &parameters, Precision::F64).err().unwrap().to_string();
+        assert!(said.contains("at most") && said.contains("courant"), "{scene}: {said}");
+    }
+}
