@@ -29,6 +29,8 @@ struct Named {
 #[derive(Serialize)]
 struct Place {
     step: u64,
+    /// Number of the part in the step: its name may occur several times.
+    part: u32,
     sub_domain: u32,
 }
 
@@ -53,7 +55,8 @@ pub fn write(trace: &Trace, path: &Path) -> io::Result<()> {
     let mut put = |name: &str, row: usize, event: &Event| -> io::Result<()> {
         writeln!(file, ",")?;
         let (ts, dur) = (1e-3 * event.begin as f64, 1e-3 * (event.end - event.begin) as f64);
-        let args = Place { step: event.step, sub_domain: event.sub_domain };
+        let Event { step, part, sub_domain, .. } = *event;
+        let args = Place { step, part, sub_domain };
         serde_json::to_writer(&mut file, &Row { name, ph: "X", ts, dur, pid: 1, tid: row, args })?;
         Ok(())
     };
