@@ -1,9 +1,9 @@
 //! Conditions on the boundary.
 //!
-//! Where points lie on the ends of an axis ([`Spread::Ends`](crate::Spread::Ends)) conditions are imposed
+//! Where points lie on the ends of an axis ([`Spread::Ends`]) conditions are imposed
 //! weakly, by penalties that fit the summation by parts: the point on the boundary evolves, too, and
 //! comes as close to its condition as the scheme is accurate. Where points lie in the middle of cells
-//! ([`Spread::Cells`](crate::Spread::Cells)) they are imposed by ghost points beyond the end.
+//! ([`Spread::Cells`]) they are imposed by ghost points beyond the end.
 //!
 //! Derivatives are along the axes, so that every axis has conditions of its own, and a point in a corner
 //! feels those of all the ends it is next to. None is given to the corner itself: where they contradict
