@@ -30,15 +30,7 @@ pub fn parameters() -> Vec<Parameter> {
             &super::WALL_PARAMETERS,
         ],
         &[("transport", 4.0), ("smoothing_ratio", 1.3)],
-        &[
-            ("kernel", "quintic-spline"),
-            ("viscous_form", "adami"),
-            ("density", "summation"),
-            ("pressure", "edac"),
-            ("pressure_form", "density-weighted"),
-            ("wall_pressure", "extrapolated"),
-            ("wall_velocity", "mirrored"),
-        ],
+        &[&super::EVEN_AND_STEADY[..], &[("wall_velocity", "mirrored")]].concat(),
     )
 }
 

@@ -35,15 +35,7 @@ pub fn parameters() -> Vec<Parameter> {
             &super::WALL_PARAMETERS,
         ],
         &[("resolution", 41.0), ("beta_max", 6.0), ("transport", 4.0)],
-        &[
-            ("kernel", "quintic-spline"),
-            ("viscous_form", "adami"),
-            ("density", "summation"),
-            ("pressure", "edac"),
-            ("pressure_form", "density-weighted"),
-            ("wall_pressure", "extrapolated"),
-            ("wall_velocity", "fitted"),
-        ],
+        &[&super::EVEN_AND_STEADY[..], &[("wall_velocity", "fitted")]].concat(),
     )
 }
 

@@ -196,6 +196,17 @@ const WALL_PARAMETERS: [Parameter; 3] = [
     ),
 ];
 
+/// Choices of flows around and between bodies: particles kept even by a transport velocity, pressure by
+/// EDAC, walls that take theirs from the fluid.
+const EVEN_AND_STEADY: [(&str, &str); 6] = [
+    ("kernel", "quintic-spline"),
+    ("viscous_form", "adami"),
+    ("density", "summation"),
+    ("pressure", "edac"),
+    ("pressure_form", "density-weighted"),
+    ("wall_pressure", "extrapolated"),
+];
+
 /// What the parameters say about the discretisation, with bodies.
 fn scheme_with_walls(parameters: &Parameters) -> Scheme {
     Scheme {
