@@ -136,12 +136,9 @@ fn of<V: Pack>(value: f64) -> V::Scalar {
     V::Scalar::of(value)
 }
 
-/// How much a parabola varies. What it varies by is taken to be at least so much that its square is a normal
-/// number: processors are slow with others, of which the tails of a step are full.
+/// How much a parabola varies.
 #[inline(always)]
 fn measure<V: Pack>(curvature: V, slope: V) -> V {
-    let least = curvature.splat_like(of::<V>(1e-18));
-    let (curvature, slope) = (curvature.abs().max(least), slope.abs().max(least));
     curvature * curvature * of::<V>(13.0 / 12.0) + slope * slope * of::<V>(0.25)
 }
 
