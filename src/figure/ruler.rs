@@ -1,5 +1,7 @@
 //! An axis laid out: its ends, and where its ticks are.
 
+use std::ops::RangeInclusive;
+
 use super::axis::{Axis, Scale};
 use super::number::{fixed, power_of_ten, rounded};
 
@@ -24,7 +26,7 @@ pub(super) struct Ruler {
 }
 
 impl Ruler {
-    /// `axis` from `low` to `high`, with at most `most` ticks if that is 2 or more.
+    /// `axis` from `low` to `high`, with at most about `most` ticks, but at least 2.
     pub fn new(axis: &Axis, [low, high]: [f64; 2], most: usize) -> Self {
         let most = most.max(2);
         let mut ruler = Self {
@@ -103,12 +105,19 @@ impl Ruler {
             exponent => exponent.div_euclid(3) * 3,
         };
         let (low, high) = (self.low / 10f64.powi(exponent), self.high / 10f64.powi(exponent));
-        let (step, decimals) = step(high - low, most);
         self.ticks.clear();
         self.minor.clear();
-        let (first, last) =
-            ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
-        for k in first..=last {
+        // On a short axis two ticks may not fit into steps for as many: one alone says nothing.
+        let steps = (most..).map(|most| {
+            let (step, decimals) = step(high - low, most);
+            let ends = (low / step - 1e-9).ceil() as i64..=(high / step + 1e-9).floor() as i64;
+            (step, decimals, ends)
+        });
+        let has_two = |(_, _, ends): &(f64, usize, RangeInclusive<i64>)| ends.end() > ends.start();
+        let Some((step, decimals, ends)) = steps.take(10).find(has_two) else {
+            return String::new();
+        };
+        for k in ends {
             let value = k as f64 * step;
             self.ticks
                 .push(Tick { value: value * 10f64.powi(exponent), label: fixed(value, decimals) });
@@ -149,6 +158,12 @@ mod tests {
             labels(Axis::new("x"), [-1.0, 1.0], 4),
             ["\u{2212}1.0", "\u{2212}0.5", "0.0", "0.5", "1.0"]
         );
+    }
+
+    #[test]
+    fn a_short_axis_has_two_ticks() {
+        assert_eq!(labels(Axis::new("y"), [0.0, 0.41], 2), ["0.0", "0.2", "0.4"]);
+        assert_eq!(labels(Axis::new("y"), [0.3, 0.9], 2), ["0.4", "0.6", "0.8"]);
     }
 
     #[test]
