@@ -39,7 +39,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use finegrain_framework::run::{Dump, Every, Progress, Run, Until};
-use finegrain_framework::{Schedule, Settings, Viewable};
+use finegrain_framework::{Domain, Model, Schedule, Settings, Simulation, Viewable};
 
 pub use error::SceneError;
 use finegrain_framework::port::{Inbox, Port};
@@ -108,6 +108,13 @@ impl Orders {
         let trace = if self.trace.is_some() { TRACED } else { 0 };
         let settings = Settings { schedule: self.schedule, trace, ..Settings::default() };
         Settings { workers: self.workers.unwrap_or(settings.workers), ..settings }
+    }
+
+    /// A simulation of `model` for these orders.
+    fn simulation<D: Domain>(&self, model: Model<D>) -> Result<Simulation<D>, SceneError> {
+        let settings = self.settings();
+        let workers = settings.workers;
+        Simulation::new(model, settings).map_err(|cause| SceneError::Workers { workers, cause })
     }
 
     /// Adds to a run when it ends, what it writes and where it begins; `end_time` is when the scene

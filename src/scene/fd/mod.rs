@@ -142,15 +142,12 @@ impl<T: Compiled, F: Flow<T>> Prepared for FdScene<T, F> {
 
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
         let Self { fd: Fd { model, parts }, flow, description } = *self;
-        let (settings, trace) = (orders.settings(), orders.trace.clone());
-        let workers = settings.workers;
         let names: Vec<_> = parts
             .unknowns
             .iter()
             .map(|&u| model.columns.column(finegrain_framework::Handle::id(u)).name().to_owned())
             .collect();
-        let simulation = Simulation::new(model, settings)
-            .map_err(|cause| SceneError::Workers { workers, cause })?;
+        let (simulation, trace) = (orders.simulation(model)?, orders.trace.clone());
         let run = flow.observe(Run::new(simulation).scene(description), &parts);
         let mut run = orders.plan(run, flow.end_time(), |every| {
             names.iter().fold(Dump::new("fields", every), |dump, name| dump.scalar(name))

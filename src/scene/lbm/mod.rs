@@ -253,10 +253,7 @@ impl<T: Compiled, F: Flow<T>> Prepared for LbmScene<T, F> {
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
         let Self { lbm, fluid, flow, description } = *self;
         let Lbm { model, fields, mesh, parts } = lbm;
-        let (settings, trace) = (orders.settings(), orders.trace.clone());
-        let workers = settings.workers;
-        let simulation = Simulation::new(model, settings)
-            .map_err(|cause| SceneError::Workers { workers, cause })?;
+        let (simulation, trace) = (orders.simulation(model)?, orders.trace.clone());
         let run = flow.observe(Run::new(simulation).scene(description), &parts);
         let mut run = orders.plan(run, flow.end_time(), |every| {
             let velocity = &["velocity_x", "velocity_y", "velocity_z"][..fields.velocity.len()];

@@ -302,10 +302,7 @@ impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
         let Self { sph, flow, description } = *self;
         let Sph { model, fields, particle_mass } = sph;
         let points = model.columns.points();
-        let (settings, trace) = (orders.settings(), orders.trace.clone());
-        let workers = settings.workers;
-        let simulation = Simulation::new(model, settings)
-            .map_err(|cause| SceneError::Workers { workers, cause })?;
+        let (simulation, trace) = (orders.simulation(model)?, orders.trace.clone());
         let run = flow.observe(Run::new(simulation).scene(description), &fields, particle_mass);
         let mut run = orders.plan(run, flow.end_time(), |every| {
             let dims = fields.velocity.len();
