@@ -1,19 +1,18 @@
 //! The scenes by finite differences: the errors that they report against their references, and how they
 //! fall.
 
+mod runs;
+
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use finegrain::scene::{Orders, Precision, Report, Scene};
 
 fn run(scene: &str, settings: &[(&str, &str)], orders: Orders) -> Report {
-    let scene = Scene::find(scene).unwrap();
-    let parameters = scene.set_for(Some("fd"), settings.iter().copied()).unwrap();
-    scene.prepare(Some("fd"), &parameters, Precision::F64).unwrap().run(orders).unwrap()
+    runs::run("fd", scene, settings, orders)
 }
 
 fn errors(scene: &str, settings: &[(&str, &str)]) -> BTreeMap<&'static str, f64> {
-    run(scene, settings, Orders::default()).errors
+    runs::errors("fd", scene, settings)
 }
 
 #[test]
@@ -80,25 +79,8 @@ fn density_and_pressure_stay_positive_in_all_of_toros_tests() {
 
 #[test]
 fn a_checkpoint_is_gone_on_from_with_the_same_bits() {
-    let folder = tempfile::tempdir().unwrap();
     let settings = [("ends", "fixed"), ("resolution", "40")];
-    let until = |steps, restart, workers| Orders {
-        steps: Some(steps),
-        workers: Some(workers),
-        out: Some(folder.path().join(steps.to_string())),
-        restart,
-        ..Orders::default()
-    };
-    let whole = run("wave", &settings, until(31, None, 1));
-    let half = run("wave", &settings, until(14, None, 2));
-    let file = |extension| {
-        let has_it = |f: &&PathBuf| f.extension().is_some_and(|e| e == extension);
-        half.files.iter().find(has_it).cloned().expect("a file of this kind")
-    };
-    assert!(file("vti").exists() && file("csv").exists());
-    let again = run("wave", &settings, until(31, Some(file("ckpt")), 3));
-    assert_eq!(again.state_hash, whole.state_hash);
-    assert_eq!(again.results, whole.results);
+    runs::assert_goes_on_with_the_same_bits("fd", "wave", &settings);
 }
 
 #[test]

@@ -1,15 +1,12 @@
 //! Flows between and inside walls, and vortices, coarse: the errors that the scenes report against
 //! their references.
 
+mod runs;
+
 use std::collections::BTreeMap;
 
-use finegrain::scene::{Orders, Precision, Scene};
-
 fn errors(scene: &str, settings: &[(&str, &str)]) -> BTreeMap<&'static str, f64> {
-    let scene = Scene::find(scene).unwrap();
-    let parameters = scene.set(settings.iter().copied()).unwrap();
-    let prepared = scene.prepare(Some("sph"), &parameters, Precision::F64).unwrap();
-    prepared.run(Orders::default()).unwrap().errors
+    runs::errors("sph", scene, settings)
 }
 
 #[test]

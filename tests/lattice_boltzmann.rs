@@ -1,19 +1,18 @@
 //! The scenes by lattice Boltzmann: the errors that they report against their references, and how
 //! they fall.
 
+mod runs;
+
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use finegrain::scene::{Orders, Precision, Report, Scene};
 
 fn run(scene: &str, settings: &[(&str, &str)], orders: Orders) -> Report {
-    let scene = Scene::find(scene).unwrap();
-    let parameters = scene.set_for(Some("lbm"), settings.iter().copied()).unwrap();
-    scene.prepare(Some("lbm"), &parameters, Precision::F64).unwrap().run(orders).unwrap()
+    runs::run("lbm", scene, settings, orders)
 }
 
 fn errors(scene: &str, settings: &[(&str, &str)]) -> BTreeMap<&'static str, f64> {
-    run(scene, settings, Orders::default()).errors
+    runs::errors("lbm", scene, settings)
 }
 
 #[test]
@@ -130,25 +129,8 @@ fn flow_past_a_cylinder_between_walls() {
 
 #[test]
 fn a_checkpoint_is_gone_on_from_with_the_same_bits() {
-    let folder = tempfile::tempdir().unwrap();
     let settings = [("resolution", "20")];
-    let until = |steps, restart, workers| Orders {
-        steps: Some(steps),
-        workers: Some(workers),
-        out: Some(folder.path().join(steps.to_string())),
-        restart,
-        ..Orders::default()
-    };
-    let whole = run("cylinder", &settings, until(31, None, 1));
-    let half = run("cylinder", &settings, until(14, None, 2));
-    let file = |extension| {
-        let has_it = |f: &&PathBuf| f.extension().is_some_and(|e| e == extension);
-        half.files.iter().find(has_it).cloned().expect("a file of this kind")
-    };
-    assert!(file("vti").exists() && file("csv").exists());
-    let again = run("cylinder", &settings, until(31, Some(file("ckpt")), 3));
-    assert_eq!(again.state_hash, whole.state_hash);
-    assert_eq!(again.results, whole.results);
+    let whole = runs::assert_goes_on_with_the_same_bits("lbm", "cylinder", &settings);
     assert_eq!(whole.results["relaxation_time"], 0.8);
     assert!(whole.results["mach"] > 0.0 && whole.results["mach"] < 0.01);
 }
