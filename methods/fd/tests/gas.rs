@@ -40,11 +40,8 @@ fn sound_has_its_speed() {
     let speed = (OPEN.heat_ratio * pressure / density).sqrt();
     let wave = |x: f64| WEAK * (TAU * x).sin();
     let (along, across) = (Side::periodic(40, 0.0, 1.0), Side::periodic(8, 0.0, 1.0));
-    let meshes = [
-        (0, Mesh::new([along])),
-        (0, Mesh::new([along, across])),
-        (1, Mesh::new([across, along])),
-    ];
+    let meshes =
+        [(0, Mesh::new([along])), (0, Mesh::new([along, across])), (1, Mesh::new([across, along]))];
     for (axis, mesh) in meshes {
         let start = |x: [f64; 3]| {
             let part = wave(x[axis]);
