@@ -1,12 +1,14 @@
 //! `finegrain report`.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
 use finegrain::report::hard_cases::{self, HardCase};
-use finegrain::report::stability::{self, Plan};
+use finegrain::report::machine::Machine;
+use finegrain::report::speed_vs_error::{self, COMPARISONS, Survey};
+use finegrain::report::stability;
 
 use super::CommandError;
 
@@ -15,6 +17,8 @@ use super::CommandError;
 pub enum ReportCommand {
     /// Which variants of a scheme survive hard cases: a table and a picture.
     Stability(StabilityArguments),
+    /// What an error costs by which method, in which precision: a table and a page to look at.
+    SpeedVsError(SpeedVsErrorArguments),
 }
 
 /// Arguments of `finegrain report stability`.
@@ -37,9 +41,35 @@ pub struct StabilityArguments {
     out: PathBuf,
 }
 
+/// Arguments of `finegrain report speed-vs-error`.
+#[derive(Args)]
+pub struct SpeedVsErrorArguments {
+    /// Only comparisons whose name contains this.
+    #[arg(long, default_value = "")]
+    scene: String,
+    /// Only this method.
+    #[arg(long, value_parser = ["sph", "lbm", "fd"])]
+    method: Option<String>,
+    /// Begin no run that would end after so many minutes; the cheapest are run first.
+    #[arg(long, default_value_t = 30.0)]
+    budget: f64,
+    /// Number of worker threads; all cores by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    workers: Option<u16>,
+    /// Folder for the page, the table and the pictures.
+    #[arg(long, default_value = "out/speed-vs-error")]
+    out: PathBuf,
+}
+
 /// Makes a report.
 pub fn report(command: ReportCommand) -> Result<(), CommandError> {
-    let ReportCommand::Stability(arguments) = command;
+    match command {
+        ReportCommand::Stability(arguments) => stability(arguments),
+        ReportCommand::SpeedVsError(arguments) => speed_vs_error(arguments),
+    }
+}
+
+fn stability(arguments: StabilityArguments) -> Result<(), CommandError> {
     let is_asked_for = |case: &HardCase| {
         case.name.contains(&arguments.case)
             && arguments.method.as_ref().is_none_or(|method| case.method == method)
@@ -51,11 +81,9 @@ pub fn report(command: ReportCommand) -> Result<(), CommandError> {
         let known = known.join(", ");
         return Err(format!("no case contains {:?}; there are {known}", arguments.case).into());
     }
-    let budget = Duration::try_from_secs_f64(60.0 * arguments.budget)
-        .map_err(|why| format!("budget of {} minutes: {why}", arguments.budget))?;
-    let plan = Plan { cases, budget, workers: arguments.workers.map(usize::from) };
-    std::fs::create_dir_all(&arguments.out)
-        .map_err(|why| format!("cannot make folder `{}`: {why}", arguments.out.display()))?;
+    let budget = minutes(arguments.budget)?;
+    let plan = stability::Plan { cases, budget, workers: arguments.workers.map(usize::from) };
+    make_folder(&arguments.out)?;
     let mut out = std::io::stdout().lock();
     let map = stability::map(&plan, |entry| {
         let courant = entry.largest_courant.map_or_else(String::new, |c| format!(", CFL x {c}"));
@@ -78,4 +106,55 @@ pub fn report(command: ReportCommand) -> Result<(), CommandError> {
         writeln!(out, "picture:  {}", picture.display())?;
     }
     Ok(())
+}
+
+fn speed_vs_error(arguments: SpeedVsErrorArguments) -> Result<(), CommandError> {
+    let is_asked_for = |name: &str| name.contains(&arguments.scene);
+    let comparisons: Vec<_> = COMPARISONS.iter().filter(|c| is_asked_for(c.name)).collect();
+    if comparisons.is_empty() {
+        let known: Vec<_> = COMPARISONS.iter().map(|comparison| comparison.name).collect();
+        let known = known.join("; ");
+        return Err(
+            format!("no comparison contains {:?}; there are {known}", arguments.scene).into()
+        );
+    }
+    let plan = speed_vs_error::Plan {
+        program: std::env::current_exe()?,
+        comparisons,
+        method: arguments.method,
+        budget: minutes(arguments.budget)?,
+        workers: arguments.workers.map(usize::from),
+    };
+    make_folder(&arguments.out)?;
+    let mut out = std::io::stdout().lock();
+    let survey = Survey::run(&plan, |case, outcome| {
+        // Only progress: who does not listen misses nothing.
+        let _ = writeln!(
+            out,
+            "{}, {}, {} points across: {outcome}",
+            case.comparison.name,
+            case.line.title(),
+            case.resolution
+        );
+    })?;
+    let (table, page) =
+        (arguments.out.join("speed-vs-error.csv"), arguments.out.join("index.html"));
+    survey.write_csv(&table)?;
+    let command: Vec<String> = std::env::args().skip(1).collect();
+    let command = format!("finegrain {}", command.join(" "));
+    survey.page(command).write(&page, &Machine::here())?;
+    survey.draw(&arguments.out)?;
+    writeln!(out, "\nnumbers:  {}", table.display())?;
+    writeln!(out, "page:     {}", page.display())?;
+    Ok(())
+}
+
+fn minutes(minutes: f64) -> Result<Duration, CommandError> {
+    Duration::try_from_secs_f64(60.0 * minutes)
+        .map_err(|why| format!("budget of {minutes} minutes: {why}").into())
+}
+
+fn make_folder(path: &Path) -> Result<(), CommandError> {
+    std::fs::create_dir_all(path)
+        .map_err(|why| format!("cannot make folder `{}`: {why}", path.display()).into())
 }

@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use clap::Args;
+use finegrain::bench::memory;
 use finegrain::framework::Schedule;
 use finegrain::framework::port::Port;
 use finegrain::framework::run::Progress;
@@ -103,6 +104,8 @@ struct Line<'a> {
     steps: u64,
     time: f64,
     wall_s: f64,
+    /// Largest resident memory of the process, bytes.
+    peak_memory: Option<u64>,
     points: usize,
     point_steps_per_s: f64,
     state_hash: String,
@@ -216,6 +219,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
             steps: report.steps,
             time: report.time,
             wall_s: report.wall_s,
+            peak_memory: memory::peak(),
             points,
             point_steps_per_s: report.point_steps_per_s(),
             state_hash: format!("{:016x}", report.state_hash),

@@ -90,7 +90,7 @@ impl Axis {
 
     /// [`Axis::extent`] with a margin, so that no marker lies on the frame; what the axis is to
     /// cover needs none.
-    pub(super) fn padded(&self, values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    pub(crate) fn padded(&self, values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
         let data = Self { covering: None, ..self.clone() };
         let [low, high] = data.extent(values)?;
         let [low, high] = match self.scale {

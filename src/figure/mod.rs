@@ -39,4 +39,5 @@ pub use chart::Chart;
 pub use error::FigureError;
 pub use field::{Field, Mark};
 pub use outline::Outline;
+pub(crate) use ruler::Ruler;
 pub use tiles::{Tile, Tiles, Tone};

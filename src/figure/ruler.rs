@@ -7,14 +7,14 @@ use super::number::{fixed, power_of_ten, rounded};
 
 /// A place on a ruler with the number written there.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
+pub(crate) struct Tick {
     pub value: f64,
     pub label: String,
 }
 
 /// An axis from `low` to `high` with its ticks.
 #[derive(Clone, Debug)]
-pub(super) struct Ruler {
+pub(crate) struct Ruler {
     scale: Scale,
     low: f64,
     high: f64,
