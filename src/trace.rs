@@ -35,7 +35,7 @@ struct Place {
 }
 
 /// Writes a trace in the trace event format (JSON): a row a worker, and one for the stretches in which
-/// the workers were given parts.
+/// the workers were given parts and for whole-domain stages between them.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -62,6 +62,9 @@ pub fn write(trace: &Trace, path: &Path) -> io::Result<()> {
     };
     for leg in trace.legs() {
         put("steps", legs, &leg)?;
+    }
+    for event in trace.whole() {
+        put(&trace.parts()[event.part as usize], legs, &event)?;
     }
     for worker in 0..trace.workers() {
         for event in trace.events(worker) {

@@ -1,4 +1,4 @@
-//! A leg: a number of steps that the workers run without coming back to the caller.
+//! A leg: what the workers run without coming back to the caller, a number of steps or a stretch of one.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -11,7 +11,7 @@ use crate::clock::Clock;
 use crate::columns::{ColumnId, Columns, Role};
 use crate::domain::{Domain, Partition};
 use crate::stage::Fault;
-use crate::step::{Entry, Step};
+use crate::step::{Entry, Step, Stretch};
 use crate::trace::{Event, Trace};
 use crate::view::{Near, Own, Place, Rates, Slot, slots_of};
 
@@ -24,8 +24,8 @@ pub struct Failure {
     pub part: usize,
     /// Name of the stage.
     pub stage: String,
-    /// Number of the sub-domain.
-    pub sub_domain: usize,
+    /// Number of the sub-domain; `None` for whole-domain work.
+    pub sub_domain: Option<usize>,
     /// Why.
     pub cause: Cause,
 }
@@ -90,9 +90,13 @@ impl Desk {
         }
         let scratch = (0..workers).map(|_| Mutex::new(scratch_for(step))).collect();
         let mut keys = Vec::new();
-        for parity in [0, step.swapped] {
-            let entries = (0..step.entries.len()).map(Some).chain([None]);
-            keys.extend(entries.map(|e| step.swapped_before(parity, e)));
+        for stretch in &step.stretches {
+            let Stretch::Parts(parts) = stretch else { continue };
+            let base = step.swapped_before_part(parts.start);
+            for parity in [0, step.swapped] {
+                let entries = (0..step.entries.len()).map(Some).chain([None]);
+                keys.extend(entries.map(|e| base ^ parity ^ step.swapped_before(e)));
+            }
         }
         keys.sort_unstable();
         keys.dedup();
@@ -130,6 +134,13 @@ pub(crate) struct Watch<'a> {
     pub trace: Option<&'a Trace>,
 }
 
+/// Which parts of which steps a leg runs.
+pub(crate) struct Stint {
+    pub steps: Range<u64>,
+    /// All parts; or, of one step, a stretch.
+    pub parts: Range<usize>,
+}
+
 /// One leg, ready to be run by a schedule.
 pub(crate) struct Leg<'a, D: Domain> {
     domain: &'a D,
@@ -138,14 +149,14 @@ pub(crate) struct Leg<'a, D: Domain> {
     step: &'a Step<D>,
     desk: &'a Desk,
     clock: &'a Clock,
-    steps: Range<u64>,
+    stint: Stint,
     watch: Watch<'a>,
     failed: AtomicBool,
     failure: Mutex<Option<Failure>>,
 }
 
 impl<'a, D: Domain> Leg<'a, D> {
-    /// A leg of `steps` steps.
+    /// A leg of some steps, or of a stretch of one.
     ///
     /// # Panics
     /// If the partition is not sealed or has other points than the columns.
@@ -155,7 +166,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         step: &'a Step<D>,
         desk: &'a mut Desk,
         clock: &'a Clock,
-        steps: Range<u64>,
+        stint: Stint,
         watch: Watch<'a>,
     ) -> Self {
         let partition = domain.partition();
@@ -173,7 +184,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             step,
             desk,
             clock,
-            steps,
+            stint,
             watch,
             failed: AtomicBool::new(false),
             failure: Mutex::new(None),
@@ -186,13 +197,11 @@ impl<'a, D: Domain> Leg<'a, D> {
     /// # Errors
     /// The first failure, in order of step, part and sub-domain, among those that happened.
     pub fn finish(self) -> Result<(), Failure> {
-        let Self { columns, step, steps, failure, .. } = self;
+        let Self { columns, step, stint: Stint { steps, parts }, failure, .. } = self;
         if (steps.end - steps.start) % 2 == 1 {
-            for (k, &(a, b)) in step.pairs.iter().enumerate() {
-                if step.swapped >> k & 1 == 1 {
-                    columns.exchange(a, b);
-                }
-            }
+            let [before, after] =
+                [parts.start, parts.end].map(|part| step.swapped_before_part(part));
+            step.exchange(columns, before ^ after);
         }
         match failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
             Some(failure) => Err(failure),
@@ -201,9 +210,10 @@ impl<'a, D: Domain> Leg<'a, D> {
     }
 
     fn place(&self, step: u64, entry: Option<usize>, id: usize) -> Place<'_, D> {
-        let odd = (step - self.steps.start) % 2 == 1;
+        let odd = (step - self.stint.steps.start) % 2 == 1;
         let parity = if odd { self.step.swapped } else { 0 };
-        let key = self.step.swapped_before(parity, entry);
+        let base = self.step.swapped_before_part(self.stint.parts.start);
+        let key = base ^ parity ^ self.step.swapped_before(entry);
         let tables = &self.desk.tables;
         let table = tables.iter().find(|(k, _)| *k == key).expect("all keys are laid out");
         Place { domain: self.domain, partition: self.partition, id, slots: &table.1 }
@@ -237,8 +247,8 @@ impl<'a, D: Domain> Leg<'a, D> {
             Ok::<_, Fault>(())
         })?;
         let is_checked = self.watch.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
-        if is_checked && part + 1 == self.parts() {
-            self.check_finite(step, sub_domain)?;
+        if is_checked && Some(part) == self.step.last_of_workers() {
+            self.check_finite(step, part, sub_domain)?;
         }
         Ok(())
     }
@@ -271,9 +281,11 @@ impl<'a, D: Domain> Leg<'a, D> {
         }
     }
 
-    fn check_finite(&self, step: u64, sub_domain: usize) -> Result<(), Cause> {
-        // SAFETY: as an update part; the step's last part has just been run here.
-        let own = unsafe { Own::new(self.place(step, None, sub_domain)) };
+    fn check_finite(&self, step: u64, part: usize, sub_domain: usize) -> Result<(), Cause> {
+        let next = self.step.part_start[part + 1];
+        let next = Some(next).filter(|&next| next < self.step.entries.len());
+        // SAFETY: as an update part; the workers' last part has just been run here.
+        let own = unsafe { Own::new(self.place(step, next, sub_domain)) };
         match self.desk.checked.iter().find(|&&id| !own.is_finite(id)) {
             Some(&id) => {
                 Err(Cause::NotFinite { column: self.columns.column(id).name().to_owned() })
@@ -294,7 +306,7 @@ impl<'a, D: Domain> Leg<'a, D> {
 
 impl<D: Domain> Work for Leg<'_, D> {
     fn parts(&self) -> usize {
-        self.step.parts()
+        self.stint.parts.len()
     }
 
     fn partition(&self) -> &Partition {
@@ -302,13 +314,14 @@ impl<D: Domain> Work for Leg<'_, D> {
     }
 
     fn steps(&self) -> Range<u64> {
-        self.steps.clone()
+        self.stint.steps.clone()
     }
 
     fn run(&self, worker: usize, step: u64, part: usize, sub_domain: usize) {
         if self.failed() {
             return;
         }
+        let part = self.stint.parts.start + part;
         let begin = self.watch.trace.map(Trace::now);
         // One net under everything: a worker that unwound would leave the others waiting for it.
         let at = Cell::new(self.step.part_start[part]);
@@ -327,7 +340,7 @@ impl<D: Domain> Work for Leg<'_, D> {
             Cause::NotFinite { .. } => self.step.part_name(part),
             _ => self.step.stages[self.step.entries[at.get()].stage].name().to_owned(),
         };
-        self.fail(Failure { step, part, stage, sub_domain, cause });
+        self.fail(Failure { step, part, stage, sub_domain: Some(sub_domain), cause });
     }
 
     fn failed(&self) -> bool {

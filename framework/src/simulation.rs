@@ -2,6 +2,7 @@
 
 mod ahead;
 mod cache;
+mod engine;
 mod error;
 mod model;
 mod position;
@@ -20,12 +21,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::clock::Clock;
 use crate::columns::{Column, Columns, Role};
 use crate::domain::Domain;
-use crate::leg::{Cause, Desk, Failure, Leg, Watch, panic_message};
+use crate::integrator::Plan;
+use crate::leg::{Cause, Desk, Failure, Watch, panic_message};
 use crate::schedule::{Executor, Schedule};
 use crate::stage::Fault;
-use crate::step::Step;
 use crate::trace::Trace;
 use crate::whole::{Pace, Partials, Whole};
+use engine::Engine;
 
 /// A model being run.
 pub struct Simulation<D: Domain> {
@@ -55,12 +57,12 @@ impl<D: Domain> Simulation<D> {
     /// # Panics
     /// If the step swaps columns of different types: its handles belong to other columns. If derived
     /// fields are updated instead of computed anew, or are kept from step to step: looking must not
-    /// change what is computed.
+    /// change what is computed (what whole-domain stages do is not looked at).
     pub fn new(model: Model<D>, settings: Settings) -> std::io::Result<Self> {
         for stage in model.plan.derived.iter().flat_map(|step| &step.stages) {
             let kept = |(id, column): (_, &Column)| column.is_kept() && stage.writes().contains(id);
             assert!(
-                stage.is_rate() && !model.columns.iter().any(kept),
+                !stage.is_update() && !model.columns.iter().any(kept),
                 "stage {} of derived fields changes the state",
                 stage.name()
             );
@@ -145,6 +147,7 @@ impl<D: Domain> Simulation<D> {
             team: self.executor.team(),
             step: self.clock.step(),
             time: self.clock.time(),
+            dt: self.clock.dt(),
             partials: &mut self.partials,
         }
     }
@@ -163,18 +166,9 @@ impl<D: Domain> Simulation<D> {
         if self.begun {
             return Ok(());
         }
-        if let Some(prologue) = &self.model.plan.prologue {
-            let (columns, workers) = (&mut self.model.columns, self.settings.workers);
-            run_once(
-                &self.model.domain,
-                columns,
-                prologue,
-                &self.clock,
-                &mut self.executor,
-                workers,
-            )
-            .map_err(|failure| self.error(failure))?;
-        }
+        let (mut engine, plan, ..) = self.engine();
+        let outcome = plan.prologue.as_ref().map_or(Ok(()), |step| engine.once(step));
+        outcome.map_err(|failure| self.error(failure))?;
         self.begun = true;
         Ok(())
     }
@@ -188,11 +182,9 @@ impl<D: Domain> Simulation<D> {
         if self.derived {
             return Ok(());
         }
-        if let Some(step) = &self.model.plan.derived {
-            let (columns, workers) = (&mut self.model.columns, self.settings.workers);
-            run_once(&self.model.domain, columns, step, &self.clock, &mut self.executor, workers)
-                .map_err(|failure| self.error(failure))?;
-        }
+        let (mut engine, plan, ..) = self.engine();
+        let outcome = plan.derived.as_ref().map_or(Ok(()), |step| engine.once(step));
+        outcome.map_err(|failure| self.error(failure))?;
         self.derived = true;
         Ok(())
     }
@@ -209,21 +201,8 @@ impl<D: Domain> Simulation<D> {
             self.derived = false;
             let steps = left.min(self.pace_left).min(self.leg_steps());
             let first = self.clock.step();
-            let leg = Leg::new(
-                &self.model.domain,
-                &mut self.model.columns,
-                &self.model.plan.step,
-                &mut self.desk,
-                &self.clock,
-                first..first + steps,
-                Watch { check_every: self.settings.check_every, trace: self.trace.as_ref() },
-            );
-            let begin = self.trace.as_ref().map(Trace::now);
-            self.executor.run(&leg);
-            let outcome = leg.finish();
-            if let (Some(trace), Some(begin)) = (&mut self.trace, begin) {
-                trace.record_leg(begin, first);
-            }
+            let (mut engine, plan, desk, watch) = self.engine();
+            let outcome = engine.run(&plan.step, desk, first..first + steps, watch);
             outcome.map_err(|failure| self.error(failure))?;
             self.clock.advance(steps);
             self.pace_left -= steps;
@@ -275,6 +254,14 @@ impl<D: Domain> Simulation<D> {
         steps.clamp(1, 1 << 16)
     }
 
+    /// What runs steps, the plan, and what the steps of the plan need.
+    fn engine(&mut self) -> (Engine<'_, D>, &Plan<D>, &mut Desk, Watch<'_>) {
+        let Model { domain, columns, plan, .. } = &mut self.model;
+        let (executor, partials, clock) = (&mut self.executor, &mut self.partials, &self.clock);
+        let watch = Watch { check_every: self.settings.check_every, trace: self.trace.as_ref() };
+        (Engine { domain, columns, executor, partials, clock }, plan, &mut self.desk, watch)
+    }
+
     fn begin_pace(&mut self) -> Result<(), RunError> {
         let mut whole = Whole {
             domain: &mut self.model.domain,
@@ -282,6 +269,7 @@ impl<D: Domain> Simulation<D> {
             team: self.executor.team(),
             step: self.clock.step(),
             time: self.clock.time(),
+            dt: self.clock.dt(),
             partials: &mut self.partials,
         };
         let (stages, pacing) = (&mut self.model.whole, &mut self.model.pacing);
@@ -373,24 +361,8 @@ impl<D: Domain> Simulation<D> {
             step: failure.step,
             time: self.clock.time_at(failure.step),
             stage: failure.stage,
-            sub_domain: Some(failure.sub_domain),
+            sub_domain: failure.sub_domain,
             cause: failure.cause,
         }
     }
-}
-
-/// Runs the stages of `step` once, without advancing time.
-fn run_once<D: Domain>(
-    domain: &D,
-    columns: &mut Columns,
-    step: &Step<D>,
-    clock: &Clock,
-    executor: &mut Executor,
-    workers: usize,
-) -> Result<(), Failure> {
-    let mut desk = Desk::new(step, columns, workers);
-    let now = clock.step();
-    let leg = Leg::new(domain, columns, step, &mut desk, clock, now..now + 1, Watch::default());
-    executor.run(&leg);
-    leg.finish()
 }

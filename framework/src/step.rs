@@ -1,12 +1,14 @@
 //! A step: the ordered list of stages that advances time by dt.
 
 use std::any::Any;
-use std::sync::Arc;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::columns::{ColumnId, ColumnSet, Handle, Rate, State};
+use crate::columns::{ColumnId, ColumnSet, Columns, Handle, Rate, State};
 use crate::domain::Domain;
 use crate::stage::{Fault, Moment, RateStage, UpdateStage};
 use crate::view::{Near, Own, Rates};
+use crate::whole::{Whole, WholeStage};
 
 /// A rate stage whose scratch type is forgotten.
 trait AnyRate<D: Domain>: Send + Sync {
@@ -77,12 +79,19 @@ impl<D: Domain, S: UpdateStage<D>> AnyUpdate<D> for S {
     }
 }
 
-/// A stage of either kind, shared by all the places of a step where it is used.
+/// A stage of any kind, shared by all the places of a step where it is used.
 pub struct Stage<D: Domain>(Kind<D>);
 
 enum Kind<D: Domain> {
     Rate(Arc<dyn AnyRate<D>>, ColumnSet),
     Update(Arc<dyn AnyUpdate<D>>),
+    Whole(Arc<SharedWhole<D>>),
+}
+
+/// A whole-domain stage, run by one thread at a time.
+struct SharedWhole<D: Domain> {
+    name: String,
+    stage: Mutex<Box<dyn WholeStage<D>>>,
 }
 
 impl<D: Domain> Clone for Stage<D> {
@@ -90,6 +99,7 @@ impl<D: Domain> Clone for Stage<D> {
         Self(match &self.0 {
             Kind::Rate(stage, writes) => Kind::Rate(Arc::clone(stage), *writes),
             Kind::Update(stage) => Kind::Update(Arc::clone(stage)),
+            Kind::Whole(stage) => Kind::Whole(Arc::clone(stage)),
         })
     }
 }
@@ -106,11 +116,19 @@ impl<D: Domain> Stage<D> {
         Self(Kind::Update(Arc::new(stage)))
     }
 
+    /// A whole-domain stage, a linear solve say: all workers come back before it, so that there is no
+    /// running ahead past it.
+    pub fn whole(stage: impl WholeStage<D> + 'static) -> Self {
+        let name = stage.name().to_owned();
+        Self(Kind::Whole(Arc::new(SharedWhole { name, stage: Mutex::new(Box::new(stage)) })))
+    }
+
     /// The stage's name.
     pub fn name(&self) -> &str {
         match &self.0 {
             Kind::Rate(stage, _) => stage.name(),
             Kind::Update(stage) => stage.name(),
+            Kind::Whole(stage) => &stage.name,
         }
     }
 
@@ -118,6 +136,7 @@ impl<D: Domain> Stage<D> {
         match (&self.0, &other.0) {
             (Kind::Rate(a, _), Kind::Rate(b, _)) => Arc::ptr_eq(a, b),
             (Kind::Update(a), Kind::Update(b)) => Arc::ptr_eq(a, b),
+            (Kind::Whole(a), Kind::Whole(b)) => Arc::ptr_eq(a, b),
             _ => false,
         }
     }
@@ -126,10 +145,18 @@ impl<D: Domain> Stage<D> {
         matches!(self.0, Kind::Rate(..))
     }
 
+    pub(crate) fn is_update(&self) -> bool {
+        matches!(self.0, Kind::Update(_))
+    }
+
+    pub(crate) fn is_whole(&self) -> bool {
+        matches!(self.0, Kind::Whole(_))
+    }
+
     pub(crate) fn writes(&self) -> ColumnSet {
         match &self.0 {
             Kind::Rate(_, writes) => *writes,
-            Kind::Update(_) => ColumnSet::default(),
+            Kind::Update(_) | Kind::Whole(_) => ColumnSet::default(),
         }
     }
 
@@ -137,6 +164,7 @@ impl<D: Domain> Stage<D> {
         match &self.0 {
             Kind::Rate(stage, _) => stage.scratch(),
             Kind::Update(stage) => stage.scratch(),
+            Kind::Whole(_) => Box::new(()),
         }
     }
 
@@ -150,7 +178,7 @@ impl<D: Domain> Stage<D> {
     ) -> Result<(), Fault> {
         match &self.0 {
             Kind::Rate(stage, _) => stage.rate(near, rates, scratch, moment),
-            Kind::Update(_) => unreachable!("parts never mix the two kinds"),
+            _ => unreachable!("parts never mix kinds"),
         }
     }
 
@@ -163,7 +191,17 @@ impl<D: Domain> Stage<D> {
     ) -> Result<(), Fault> {
         match &self.0 {
             Kind::Update(stage) => stage.update(own, scratch, moment),
-            Kind::Rate(..) => unreachable!("parts never mix the two kinds"),
+            _ => unreachable!("parts never mix kinds"),
+        }
+    }
+
+    /// Runs a whole-domain stage.
+    pub(crate) fn run_whole(&self, whole: &mut Whole<'_, D>) -> Result<(), Fault> {
+        match &self.0 {
+            Kind::Whole(stage) => {
+                stage.stage.lock().unwrap_or_else(PoisonError::into_inner).run(whole)
+            }
+            _ => unreachable!("parts never mix kinds"),
         }
     }
 }
@@ -179,10 +217,11 @@ pub(crate) struct Entry {
     pub swapped: u64,
 }
 
-/// A step: parts in order, each one rate stage, or update stages in a row.
+/// A step: parts in order, each one rate stage, update stages in a row, or a whole-domain stage.
 ///
 /// Everybody may run a part once all neighbours have finished the part before; update stages in a
-/// row need no meeting between them, so they are one part.
+/// row need no meeting between them, so they are one part. Before and after a whole-domain stage
+/// all meet: it cuts the step into stretches.
 pub struct Step<D: Domain> {
     pub(crate) stages: Vec<Stage<D>>,
     pub(crate) entries: Vec<Entry>,
@@ -191,6 +230,17 @@ pub struct Step<D: Domain> {
     pub(crate) pairs: Vec<(ColumnId, ColumnId)>,
     /// Pairs exchanged an odd number of times in a whole step.
     pub(crate) swapped: u64,
+    /// What is done in one go.
+    pub(crate) stretches: Vec<Stretch>,
+}
+
+/// Parts of a step that are done in one go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Stretch {
+    /// By the workers, sub-domain by sub-domain.
+    Parts(Range<usize>),
+    /// Over the whole domain: one part.
+    Whole(usize),
 }
 
 impl<D: Domain> Step<D> {
@@ -203,6 +253,7 @@ impl<D: Domain> Step<D> {
                 part_start: Vec::new(),
                 pairs: Vec::new(),
                 swapped: 0,
+                stretches: Vec::new(),
             },
         }
     }
@@ -225,10 +276,38 @@ impl<D: Domain> Step<D> {
         self.entries.iter().map(stage).collect::<Vec<_>>().join(", ")
     }
 
-    /// The table to look a column's memory up in, for entry `entry` of a step before which the
-    /// pairs in `parity` have been exchanged; `None` for the state after the step's last stage.
-    pub(crate) fn swapped_before(&self, parity: u64, entry: Option<usize>) -> u64 {
-        parity ^ entry.map_or(self.swapped, |e| self.entries[e].swapped)
+    /// Pairs exchanged an odd number of times in a step before `entry`; `None` for after the step's
+    /// last stage.
+    pub(crate) fn swapped_before(&self, entry: Option<usize>) -> u64 {
+        entry.map_or(self.swapped, |e| self.entries[e].swapped)
+    }
+
+    /// The same before a part; one past the last for after the step's last stage.
+    pub(crate) fn swapped_before_part(&self, part: usize) -> u64 {
+        self.swapped_before(Some(self.part_start[part]).filter(|_| part < self.parts()))
+    }
+
+    /// Exchanges the memory of the pairs in `swapped`.
+    pub(crate) fn exchange(&self, columns: &mut Columns, swapped: u64) {
+        for (k, &(a, b)) in self.pairs.iter().enumerate() {
+            if swapped >> k & 1 == 1 {
+                columns.exchange(a, b);
+            }
+        }
+    }
+
+    /// Whether the workers have to come back in the middle of it.
+    pub(crate) fn has_whole(&self) -> bool {
+        self.stages.iter().any(Stage::is_whole)
+    }
+
+    /// The last part that workers run; `None` if there is none.
+    pub(crate) fn last_of_workers(&self) -> Option<usize> {
+        let last = |stretch: &Stretch| match stretch {
+            Stretch::Parts(parts) => Some(parts.end - 1),
+            Stretch::Whole(_) => None,
+        };
+        self.stretches.iter().rev().find_map(last)
     }
 }
 
@@ -257,8 +336,8 @@ impl<D: Domain> StepBuilder<D> {
             step.stages.push(stage.clone());
             step.stages.len() - 1
         });
-        let joins_updates = !stage.is_rate()
-            && step.entries.last().is_some_and(|last| !step.stages[last.stage].is_rate());
+        let joins_updates = stage.is_update()
+            && step.entries.last().is_some_and(|last| step.stages[last.stage].is_update());
         if !joins_updates {
             step.part_start.push(step.entries.len());
         }
@@ -307,7 +386,17 @@ impl<D: Domain> StepBuilder<D> {
 
     /// The step.
     pub fn build(mut self) -> Step<D> {
-        self.step.part_start.push(self.step.entries.len());
+        let step = &mut self.step;
+        for (part, &start) in step.part_start.iter().enumerate() {
+            match step.stretches.last_mut() {
+                _ if step.stages[step.entries[start].stage].is_whole() => {
+                    step.stretches.push(Stretch::Whole(part));
+                }
+                Some(Stretch::Parts(parts)) => parts.end = part + 1,
+                _ => step.stretches.push(Stretch::Parts(part..part + 1)),
+            }
+        }
+        step.part_start.push(step.entries.len());
         self.step
     }
 }

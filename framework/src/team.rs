@@ -138,8 +138,25 @@ impl Team {
         length: usize,
         task: impl Fn(usize, &mut [T]) + Sync,
     ) {
+        let mut nothing = vec![(); self.workers()];
+        self.for_each_chunk_with(&mut nothing, data, length, |(), k, chunk| task(k, chunk));
+    }
+
+    /// As [`Team::for_each_chunk`], with working memory: of the elements of `scratch`, every worker has
+    /// its own.
+    ///
+    /// # Panics
+    /// As [`Team::for_each_chunk`]; if there are fewer elements of `scratch` than workers.
+    pub fn for_each_chunk_with<S: Send, T: Send>(
+        &mut self,
+        scratch: &mut [S],
+        data: &mut [T],
+        length: usize,
+        task: impl Fn(&mut S, usize, &mut [T]) + Sync,
+    ) {
+        assert!(scratch.len() >= self.workers(), "every worker needs a scratch");
         struct Base<T>(*mut T);
-        // SAFETY: the address is used for disjoint chunks only, each by one worker; `T: Send`.
+        // SAFETY: the address is used for disjoint elements only, each by one worker; `T: Send`.
         unsafe impl<T: Send> Sync for Base<T> {}
         impl<T> Base<T> {
             fn get(&self) -> *mut T {
@@ -148,14 +165,21 @@ impl Team {
         }
 
         let total = data.len();
-        let base = Base(data.as_mut_ptr());
-        self.for_each(total.div_ceil(length), 1, |k| {
-            let start = k * length;
-            let length = length.min(total - start);
-            // SAFETY: `start..start + length` lies in `data`, which is borrowed exclusively until
-            // `run` returns, and dispatch hands every `k` to exactly one worker.
-            let chunk = unsafe { std::slice::from_raw_parts_mut(base.get().add(start), length) };
-            task(k, chunk);
+        let (base, scratch) = (Base(data.as_mut_ptr()), Base(scratch.as_mut_ptr()));
+        let dispatch = Dispatch::new(total.div_ceil(length), 1, self.workers());
+        self.run(|worker| {
+            // SAFETY: `scratch` is borrowed exclusively until `run` returns and has an element for
+            // every worker, none of whom is run twice.
+            let scratch = unsafe { &mut *scratch.get().add(worker) };
+            for k in std::iter::from_fn(|| dispatch.request()).flatten() {
+                let start = k * length;
+                let length = length.min(total - start);
+                // SAFETY: `start..start + length` lies in `data`, which is borrowed exclusively until
+                // `run` returns, and dispatch hands every `k` to exactly one worker.
+                let chunk =
+                    unsafe { std::slice::from_raw_parts_mut(base.get().add(start), length) };
+                task(scratch, k, chunk);
+            }
         });
     }
 }
@@ -204,6 +228,22 @@ mod tests {
             });
             assert!(data.iter().enumerate().all(|(i, &x)| x == i));
         }
+    }
+
+    #[test]
+    fn every_worker_has_a_scratch_of_its_own() {
+        let mut team = Team::new(3).unwrap();
+        let (mut sums, mut data) = ([0usize; 3], vec![0usize; 1001]);
+        team.for_each_chunk_with(&mut sums, &mut data, 10, |sum, k, chunk| {
+            *sum += chunk.len();
+            chunk.fill(k);
+        });
+        assert_eq!(sums.iter().sum::<usize>(), 1001);
+        assert!(data.iter().enumerate().all(|(i, &k)| k == i / 10));
+        let few = AssertUnwindSafe(|| {
+            team.for_each_chunk_with(&mut sums[..2], &mut data, 1, |_, _, _| {})
+        });
+        assert!(catch_unwind(few).is_err());
     }
 
     #[test]

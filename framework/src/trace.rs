@@ -1,7 +1,7 @@
 //! Traces: which worker ran which part of which sub-domain when.
 
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crossbeam_utils::CachePadded;
@@ -35,7 +35,9 @@ pub struct Trace {
     workers: Vec<CachePadded<Mutex<Ring>>>,
     /// Stretches in which the workers were given parts, with the first step; what lies between is
     /// whole-domain work, results and events.
-    legs: Ring,
+    legs: Mutex<Ring>,
+    /// Whole-domain stages inside steps.
+    whole: Mutex<Ring>,
 }
 
 impl Trace {
@@ -47,7 +49,8 @@ impl Trace {
             began: Instant::now(),
             parts,
             workers: (0..workers).map(ring).collect(),
-            legs: Ring::new(capacity),
+            legs: Mutex::new(Ring::new(capacity)),
+            whole: Mutex::new(Ring::new(capacity)),
         }
     }
 
@@ -58,12 +61,17 @@ impl Trace {
     }
 
     pub(crate) fn record(&self, worker: usize, event: Event) {
-        self.workers[worker].lock().unwrap_or_else(PoisonError::into_inner).push(event);
+        lock(&self.workers[worker]).push(event);
     }
 
-    pub(crate) fn record_leg(&mut self, begin: u64, step: u64) {
+    pub(crate) fn record_leg(&self, begin: u64, step: u64) {
         let end = self.now();
-        self.legs.push(Event { begin, end, step, ..Event::default() });
+        lock(&self.legs).push(Event { begin, end, step, ..Event::default() });
+    }
+
+    pub(crate) fn record_whole(&self, begin: u64, step: u64, part: usize) {
+        let (end, part) = (self.now(), part as u32);
+        lock(&self.whole).push(Event { begin, end, step, part, sub_domain: 0 });
     }
 
     /// Names of the parts of a step.
@@ -81,36 +89,67 @@ impl Trace {
     /// # Panics
     /// If there is no such worker.
     pub fn events(&self, worker: usize) -> Vec<Event> {
-        self.workers[worker].lock().unwrap_or_else(PoisonError::into_inner).in_order()
+        lock(&self.workers[worker]).in_order()
     }
 
     /// The last legs, in order: stretches in which the workers were given parts.
     pub fn legs(&self) -> Vec<Event> {
-        self.legs.in_order()
+        lock(&self.legs).in_order()
+    }
+
+    /// The last whole-domain stages inside steps, in order.
+    pub fn whole(&self) -> Vec<Event> {
+        lock(&self.whole).in_order()
     }
 
     /// How the time was spent, as far back as all workers remember.
     pub fn summary(&self) -> Summary {
         let mut events: Vec<_> = (0..self.workers()).map(|worker| self.events(worker)).collect();
-        let mut legs = self.legs();
+        let (mut legs, mut whole) = (self.legs(), self.whole());
         // What only some remember would look like waiting of the others.
-        let is_full = |events: &&Vec<Event>| events.len() == self.legs.capacity;
-        let first =
-            events.iter().chain([&legs]).filter(is_full).map(|events| events[0].begin).max();
+        let capacity = lock(&self.legs).capacity;
+        let is_full = |events: &&Vec<Event>| events.len() == capacity;
+        let all = events.iter().chain([&legs, &whole]);
+        let first = all.filter(is_full).map(|events| events[0].begin).max();
         let first = first.or_else(|| legs.first().map(|leg| leg.begin)).unwrap_or(0);
         events.iter_mut().for_each(|events| events.retain(|event| event.begin >= first));
         legs.retain(|leg| leg.end > first);
+        whole.retain(|event| event.begin >= first);
 
-        let last = legs.last().map_or(first, |leg| leg.end);
+        let ends = [&legs, &whole].map(|events| events.last().map_or(first, |last| last.end));
+        let last = ends[0].max(ends[1]);
         let in_legs: u64 = legs.iter().map(|leg| leg.end - leg.begin.max(first)).sum();
+        let in_whole: u64 = whole.iter().map(Event::duration).sum();
         let workers = events.iter().map(|events| Shares::of(events, in_legs)).collect();
         Summary {
             seconds: seconds(last - first),
-            between: seconds(last - first - in_legs),
+            between: seconds(last - first - in_legs - in_whole),
+            whole: seconds(in_whole),
             workers,
+            stages: self.stages(&events, &whole),
             largest: Largest::of(&events),
         }
     }
+
+    /// For each name of a part, the time that all workers together spent in such parts, s; the time of
+    /// whole-domain stages counts for all of them.
+    fn stages(&self, events: &[Vec<Event>], whole: &[Event]) -> Vec<(String, f64)> {
+        let mut stages: Vec<(String, f64)> = Vec::new();
+        let all = events.iter().flatten().map(|event| (event, 1));
+        for (event, times) in all.chain(whole.iter().map(|event| (event, self.workers()))) {
+            let name = &self.parts[event.part as usize];
+            let time = seconds(event.duration()) * times as f64;
+            match stages.iter_mut().find(|(known, _)| known == name) {
+                Some((_, sum)) => *sum += time,
+                None => stages.push((name.clone(), time)),
+            }
+        }
+        stages
+    }
+}
+
+fn lock(ring: &Mutex<Ring>) -> MutexGuard<'_, Ring> {
+    ring.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The last events, in memory that is there from the beginning.
@@ -145,10 +184,15 @@ impl Ring {
 pub struct Summary {
     /// All of it.
     pub seconds: f64,
-    /// Between legs: whole-domain work, results, events.
+    /// Between steps: whole-domain work, results, events.
     pub between: f64,
+    /// In whole-domain stages inside steps.
+    pub whole: f64,
     /// What each worker did in legs.
     pub workers: Vec<Shares>,
+    /// What all workers together spent in each kind of part, by name; whole-domain stages count for all
+    /// workers.
+    pub stages: Vec<(String, f64)>,
     /// The sub-domain that took longest, if any was run.
     pub largest: Option<Largest>,
 }
@@ -164,8 +208,12 @@ impl Summary {
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |part: f64, whole: f64| 100.0 * part / whole;
-        let between = percent(self.between, self.seconds);
-        writeln!(f, "the last {:.3} s: {between:.2} % between steps", self.seconds)?;
+        let [between, whole] = [self.between, self.whole].map(|x| percent(x, self.seconds));
+        write!(f, "the last {:.3} s: {between:.2} % between steps", self.seconds)?;
+        if self.whole > 0.0 {
+            write!(f, ", {whole:.2} % in whole-domain stages")?;
+        }
+        writeln!(f)?;
         for (worker, shares) in self.workers.iter().enumerate() {
             let Shares { busy, hand_out, waiting, parts } = *shares;
             let all = busy + hand_out + waiting;
@@ -175,6 +223,10 @@ impl fmt::Display for Summary {
                 "worker {worker}: busy {busy:.2} %, hand-out {hand_out:.2} %, waiting {waiting:.2} %, \
                  {parts} parts"
             )?;
+        }
+        let all: f64 = self.stages.iter().map(|(_, time)| time).sum();
+        for (name, time) in &self.stages {
+            writeln!(f, "{:5.2} % in {name}", percent(*time, all))?;
         }
         write!(f, "balance {:.4}", self.balance())?;
         if let Some(Largest { sub_domain, seconds, over_mean }) = self.largest {

@@ -1,4 +1,4 @@
-//! Whole-domain work between parts: re-sorting, time step control, anything that needs to see or
+//! Whole-domain work between parts: re-sorting, time step control, a linear solve, anything that needs to see or
 //! change everything at once. Named as a kind of its own because it is where workers meet.
 
 use crate::columns::{ColumnSet, Columns};
@@ -17,8 +17,10 @@ pub struct Whole<'a, D: Domain> {
     pub team: &'a mut Team,
     /// Number of steps done.
     pub step: u64,
-    /// Present time.
+    /// Present time; inside a step, that of the stage.
     pub time: f64,
+    /// Length of the present step; between steps that of the last, and 0 before the first.
+    pub dt: f64,
     pub(crate) partials: &'a mut Partials,
 }
 
@@ -85,7 +87,8 @@ impl<D: Domain> Whole<'_, D> {
     }
 }
 
-/// A stage over the whole domain, run at the beginning of every [`Pace`].
+/// A stage over the whole domain, run at the beginning of every [`Pace`] or, as one of the stages of
+/// a step, inside every step ([`crate::Stage::whole`]).
 pub trait WholeStage<D: Domain>: Send {
     /// Name for error messages and traces.
     fn name(&self) -> &str;

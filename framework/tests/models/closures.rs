@@ -84,6 +84,14 @@ where
     }
 }
 
+/// A whole-domain stage of a step that does what `run` does.
+pub fn whole_in_step<D: Domain, F>(name: &'static str, run: F) -> Stage<D>
+where
+    F: FnMut(&mut Whole<'_, D>) -> Result<(), Fault> + Send + 'static,
+{
+    Stage::whole(ByWhole(name, run))
+}
+
 /// A whole-domain stage that does what `run` does.
 pub fn whole_stage<D: Domain, F>(name: &'static str, run: F) -> Box<dyn WholeStage<D>>
 where
