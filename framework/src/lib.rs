@@ -100,6 +100,7 @@ mod vector_field;
 mod view;
 mod viewable;
 mod whole;
+mod workload;
 
 pub use columns::*;
 pub use domain::*;
@@ -115,3 +116,4 @@ pub use vector_field::VectorField;
 pub use view::*;
 pub use viewable::{Geometry, Viewable};
 pub use whole::{FixedPace, Pace, Pacing, RigidPace, Whole, WholeStage};
+pub use workload::{PartCost, Workload};

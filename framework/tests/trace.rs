@@ -103,3 +103,29 @@ fn what_sorts_is_traced_by_the_numbers_of_its_time() {
     assert!((0..20).all(|step| steps.contains(&step)));
     assert!(trace.summary().between > 0.0);
 }
+
+#[test]
+fn what_a_step_costs_is_known_for_every_part_of_every_sub_domain() {
+    let simulation = traced(Schedule::Lockstep, 2, 10_000);
+    let workload = Workload::of(&simulation).unwrap();
+    let partition = simulation.domain().partition();
+    assert_eq!(workload.parts.len(), 2);
+    for part in &workload.parts {
+        let PartCost::SubDomains(costs) = part else { panic!("{part:?}") };
+        assert_eq!(costs.len(), partition.len());
+        assert!(costs.iter().all(|&cost| cost > 0.0));
+    }
+    assert_eq!(workload.neighbours.len(), partition.len());
+    assert_eq!(workload.neighbours[3], partition.neighbours(3));
+    // Two legs, of which the second begins with step 3.
+    assert_eq!(workload.steps_per_leg, 3.0);
+    assert!(workload.between > 0.0 && workload.seconds() > workload.between);
+    let columns = simulation.columns();
+    assert!(workload.bytes >= 8 * columns.points() * columns.iter().count());
+}
+
+#[test]
+fn without_enough_of_a_trace_nothing_is_known_of_what_a_step_costs() {
+    assert_eq!(Workload::of(&traced(Schedule::Lockstep, 2, 0)), None);
+    assert_eq!(Workload::of(&traced(Schedule::Lockstep, 2, 5)), None);
+}
