@@ -3,4 +3,5 @@
 pub mod cylinder;
 pub mod figures;
 pub mod memory;
+pub mod overheads;
 pub mod row;

@@ -7,10 +7,13 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 use finegrain::report::hard_cases::{self, HardCase};
 use finegrain::report::machine::Machine;
+use finegrain::report::scaling::{self, Scaling};
 use finegrain::report::speed_vs_error::{self, COMPARISONS, Survey};
 use finegrain::report::stability;
+use finegrain::scene::{Precision, Scene};
 
 use super::CommandError;
+use super::run::setting;
 
 /// Reports over many runs.
 #[derive(Subcommand)]
@@ -19,6 +22,8 @@ pub enum ReportCommand {
     Stability(StabilityArguments),
     /// What an error costs by which method, in which precision: a table and a page to look at.
     SpeedVsError(SpeedVsErrorArguments),
+    /// How a scene scales: Figs. 10 to 12 of the paper, measured here and forecast for up to 128 workers.
+    Scaling(ScalingArguments),
 }
 
 /// Arguments of `finegrain report stability`.
@@ -61,11 +66,40 @@ pub struct SpeedVsErrorArguments {
     out: PathBuf,
 }
 
+/// Arguments of `finegrain report scaling`.
+#[derive(Args)]
+pub struct ScalingArguments {
+    /// Name of a built-in scene (see `finegrain scenes`).
+    scene: String,
+    /// Set a parameter of the scene; may be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    settings: Vec<(String, String)>,
+    /// Numerical method; the scene's first by default.
+    #[arg(long)]
+    method: Option<String>,
+    /// Scalar type.
+    #[arg(long, default_value = "f64")]
+    precision: Precision,
+    /// Steps of a run.
+    #[arg(long, default_value_t = 50, value_parser = clap::value_parser!(u64).range(2..))]
+    steps: u64,
+    /// Runs of every schedule and number of workers.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Most workers; as many as there are cores by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    workers: Option<u16>,
+    /// Folder for the page, the table and traces.
+    #[arg(long, default_value = "out/scaling")]
+    out: PathBuf,
+}
+
 /// Makes a report.
 pub fn report(command: ReportCommand) -> Result<(), CommandError> {
     match command {
         ReportCommand::Stability(arguments) => stability(arguments),
         ReportCommand::SpeedVsError(arguments) => speed_vs_error(arguments),
+        ReportCommand::Scaling(arguments) => scaling(arguments),
     }
 }
 
@@ -140,13 +174,49 @@ fn speed_vs_error(arguments: SpeedVsErrorArguments) -> Result<(), CommandError> 
     let (table, page) =
         (arguments.out.join("speed-vs-error.csv"), arguments.out.join("index.html"));
     survey.write_csv(&table)?;
-    let command: Vec<String> = std::env::args().skip(1).collect();
-    let command = format!("finegrain {}", command.join(" "));
-    survey.page(command).write(&page, &Machine::here())?;
+    survey.page(command_line()).write(&page, &Machine::here())?;
     survey.draw(&arguments.out)?;
     writeln!(out, "\nnumbers:  {}", table.display())?;
     writeln!(out, "page:     {}", page.display())?;
     Ok(())
+}
+
+fn scaling(arguments: ScalingArguments) -> Result<(), CommandError> {
+    let scene = Scene::find(&arguments.scene)?;
+    let method = scene.method(arguments.method.as_deref())?.name;
+    let settings = arguments.settings.iter().map(|(key, value)| (key.as_str(), value.as_str()));
+    let parameters = scene.set_for(Some(method), settings.clone())?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let plan = scaling::Plan {
+        scene,
+        method,
+        parameters,
+        precision: arguments.precision,
+        steps: arguments.steps,
+        repeats: usize::from(arguments.repeats),
+        workers: arguments.workers.map_or(cores, usize::from),
+        out: arguments.out.clone(),
+    };
+    make_folder(&arguments.out)?;
+    let mut out = std::io::stdout().lock();
+    let scaling = Scaling::run(&plan, |what| {
+        // Only progress: who does not listen misses nothing.
+        let _ = writeln!(out, "{what}");
+    })?;
+    let (table, page) = (arguments.out.join("scaling.csv"), arguments.out.join("index.html"));
+    scaling.write_csv(&table)?;
+    let settings: String = settings.map(|(key, value)| format!(", {key} = {value}")).collect();
+    let title = format!("{} by {}{settings}", scene.name, method.to_uppercase());
+    scaling.page(&title, command_line()).write(&page, &Machine::here())?;
+    writeln!(out, "\nnumbers:  {}", table.display())?;
+    writeln!(out, "page:     {}", page.display())?;
+    Ok(())
+}
+
+/// The command that this is.
+fn command_line() -> String {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    format!("finegrain {}", words.join(" "))
 }
 
 fn minutes(minutes: f64) -> Result<Duration, CommandError> {

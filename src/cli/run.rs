@@ -72,7 +72,8 @@ pub struct RunArguments {
     json: bool,
 }
 
-fn setting(text: &str) -> Result<(String, String), String> {
+/// A parameter and its value.
+pub fn setting(text: &str) -> Result<(String, String), String> {
     text.split_once('=')
         .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
         .filter(|(key, _)| !key.is_empty())

@@ -1,9 +1,8 @@
-//! Work-precision diagrams: error over wall-clock time, both logarithmic, as SVG whose colours the page
-//! chooses.
+//! Diagrams of lines with markers, as SVG whose colours the page chooses.
 
 use maud::{Markup, html};
 
-use crate::figure::{Axis, Ruler, Scale};
+use crate::figure::{Axis, Ruler};
 
 /// A line of a diagram.
 pub struct Series {
@@ -19,11 +18,11 @@ pub struct Series {
 
 /// A point of a line.
 pub struct Point {
-    /// Along x and y, both positive.
+    /// Along x and y.
     pub place: [f64; 2],
     /// What is written beside it, where there is room.
     pub label: String,
-    /// What is said about it when it is pointed at.
+    /// What is said about it where it is pointed at.
     pub about: String,
 }
 
@@ -31,10 +30,10 @@ pub struct Point {
 pub struct Diagram {
     /// What it shows.
     pub title: String,
-    /// What is measured to the right, with its unit.
-    pub x: String,
-    /// What is measured upwards, with its unit.
-    pub y: String,
+    /// What is measured to the right.
+    pub x: Axis,
+    /// What is measured upwards.
+    pub y: Axis,
     /// Its lines.
     pub series: Vec<Series>,
 }
@@ -65,7 +64,7 @@ impl Diagram {
             figure {
                 figcaption { (self.title) }
                 svg viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img" aria-label=(self.title) {
-                    (frame.render(&self.x, &self.y))
+                    (frame.render())
                     @for series in &self.series {
                         g class=(series.class) { (series.line(&frame)) }
                     }
@@ -100,12 +99,11 @@ impl Diagram {
     }
 
     fn frame(&self) -> Option<Frame> {
-        let axis = |name: &str| Axis::new(name).scale(Scale::Log10);
-        let ruler = |a: usize, name: &str, most| {
-            let extent = axis(name).padded(self.points().map(|point| point.place[a]))?;
-            Some(Ruler::new(&axis(name), extent, most))
+        let ruler = |a: usize, axis: &Axis| {
+            let extent = axis.padded(self.points().map(|point| point.place[a]))?;
+            Some(Ruler::new(axis, extent, 8))
         };
-        Some(Frame { x: ruler(0, &self.x, 7)?, y: ruler(1, &self.y, 7)? })
+        Some(Frame { x: ruler(0, &self.x)?, y: ruler(1, &self.y)? })
     }
 }
 
@@ -120,7 +118,7 @@ impl Frame {
         [LEFT + self.x.place(x) * (RIGHT - LEFT), BOTTOM - self.y.place(y) * (BOTTOM - TOP)]
     }
 
-    fn render(&self, x: &str, y: &str) -> Markup {
+    fn render(&self) -> Markup {
         let along = |value: f64| pixel(LEFT + self.x.place(value) * (RIGHT - LEFT));
         let up = |value: f64| pixel(BOTTOM - self.y.place(value) * (BOTTOM - TOP));
         let middle = pixel(0.5 * (TOP + BOTTOM));
@@ -142,8 +140,8 @@ impl Frame {
                     text x=(LEFT - 7.0) y=(up(tick.value)) dy="0.35em" text-anchor="end" { (tick.label) }
                 }
             }
-            text x=(0.5 * (LEFT + RIGHT)) y=(HEIGHT - 12.0) text-anchor="middle" { (x) }
-            text text-anchor="middle" transform=(format!("translate(15 {middle}) rotate(-90)")) { (y) }
+            text x=(0.5 * (LEFT + RIGHT)) y=(HEIGHT - 12.0) text-anchor="middle" { (self.x.title) }
+            text text-anchor="middle" transform=(format!("translate(15 {middle}) rotate(-90)")) { (self.y.title) }
         }
     }
 }
@@ -234,6 +232,7 @@ fn pixel(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Scale;
 
     fn point(place: [f64; 2]) -> Point {
         Point { place, label: "100".into(), about: "100 points".into() }
@@ -241,7 +240,8 @@ mod tests {
 
     fn diagram(points: Vec<Point>) -> Diagram {
         let series = Series { name: "A & B".into(), class: "sph", index: 0, points };
-        Diagram { title: "t".into(), x: "x".into(), y: "y".into(), series: vec![series] }
+        let axis = |name| Axis::new(name).scale(Scale::Log10);
+        Diagram { title: "t".into(), x: axis("x"), y: axis("y"), series: vec![series] }
     }
 
     #[test]

@@ -4,5 +4,6 @@ mod diagram;
 pub mod hard_cases;
 pub mod machine;
 pub mod page;
+pub mod scaling;
 pub mod speed_vs_error;
 pub mod stability;

@@ -71,6 +71,12 @@ pub enum SceneError {
         /// Why.
         cause: std::io::Error,
     },
+    /// A trace does not show what a step costs.
+    #[error("{steps} steps are too few to tell what a step costs: give more")]
+    TooShort {
+        /// Steps of the run.
+        steps: u64,
+    },
     /// The trace cannot be written.
     #[error("cannot write trace `{}`: {cause}", path.display())]
     Trace {

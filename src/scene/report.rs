@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use finegrain_framework::run::{Stopped, Summary};
-use finegrain_framework::{Domain, Simulation, trace};
+use finegrain_framework::{Domain, Simulation, Workload, trace};
 
 use super::SceneError;
 use crate::figure::{Chart, Field, FigureError};
@@ -75,6 +75,8 @@ pub struct Report {
     pub picture: Option<Picture>,
     /// How workers spent their time, if a trace was asked for.
     pub trace: Option<trace::Summary>,
+    /// What a step costs, if a trace was asked for and knows it.
+    pub workload: Option<Workload>,
 }
 
 impl Report {
@@ -95,6 +97,7 @@ impl Report {
             files: summary.files.clone(),
             picture: None,
             trace: None,
+            workload: None,
         }
     }
 
@@ -111,6 +114,7 @@ impl Report {
             crate::trace::write(trace, &path)
                 .map_err(|cause| SceneError::Trace { path: path.clone(), cause })?;
             self.trace = Some(trace.summary());
+            self.workload = Workload::of(simulation);
             self.files.push(path);
         }
         Ok(())

@@ -96,8 +96,8 @@ impl Survey {
         });
         Diagram {
             title: format!("{}: {}", comparison.name, comparison.quantity),
-            x: format!("{TIME} (s)"),
-            y: "relative error".into(),
+            x: Axis::new(TIME).unit("s").scale(Scale::Log10),
+            y: Axis::new("relative error").scale(Scale::Log10),
             series: series.collect(),
         }
     }

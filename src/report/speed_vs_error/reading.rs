@@ -157,8 +157,11 @@ mod tests {
     use super::super::survey::Case;
     use super::*;
 
-    /// Resolution, wall-clock time and error of runs of a line of the first comparison.
-    fn survey(lines: &[(usize, &[(u32, f64, f64)])]) -> Survey {
+    /// Resolution, wall-clock time and error of a run.
+    type Run = (u32, f64, f64);
+
+    /// Runs of lines of the first comparison.
+    fn survey(lines: &[(usize, &[Run])]) -> Survey {
         let comparison = &COMPARISONS[0];
         let mut survey = Survey::default();
         for &(line, runs) in lines {
