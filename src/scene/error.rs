@@ -72,7 +72,7 @@ pub enum SceneError {
         cause: std::io::Error,
     },
     /// A trace does not show what a step costs.
-    #[error("{steps} steps are too few to tell what a step costs: give more")]
+    #[error("steps: {steps} are too few to tell what a step costs; give more")]
     TooShort {
         /// Steps of the run.
         steps: u64,

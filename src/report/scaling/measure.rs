@@ -62,6 +62,13 @@ pub struct Forecast {
     pub seconds_here: f64,
 }
 
+impl Forecast {
+    /// Whether the bandwidth measured here would bind.
+    pub fn is_bound(&self) -> bool {
+        self.seconds_here > self.seconds
+    }
+}
+
 /// What was measured of a scene, and what follows.
 #[derive(Clone, Debug)]
 pub struct Scaling {

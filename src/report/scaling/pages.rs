@@ -32,8 +32,8 @@ impl Scaling {
             title: format!("Scaling: {scene}"),
             lead: "Filled markers are measured, the best of several runs. Open ones are a forecast: \
                    Dispatch simulated event by event with the measured cost of every part of every \
-                   sub-domain and the measured cost of handing out and meeting; the first supposes that \
-                   every core brings its own memory bandwidth, the second that all share this machine's."
+                   sub-domain and the measured cost of handing out and meeting. It supposes that every core brings its own \
+                   memory bandwidth; where all sharing this machine's would bind, a second line says so."
                 .into(),
             body,
             command,
@@ -45,26 +45,31 @@ impl Scaling {
         let mut series = Vec::new();
         for schedule in Schedule::ALL {
             let Some(alone) = self.seconds(schedule, 1) else { continue };
-            let point = |workers: usize, seconds: f64, what: &str| {
+            let point = |workers: usize, seconds: f64, alone: f64, what: &str| {
                 let y = value(seconds, workers as f64, alone);
                 let about = format!("{schedule}, {workers} workers, {what}: {y:.4}");
                 Point { place: [workers as f64, y], label: String::new(), about }
             };
             let measured = self.measured.iter().filter(|m| m.schedule == schedule);
-            let measured = measured.map(|m| point(m.workers, m.best(), "measured"));
+            let measured = measured.map(|m| point(m.workers, m.best(), alone, "measured"));
             let name = format!("{schedule}, measured");
             let class = schedule.name();
             series.push(Series { name, class, index: 0, points: measured.collect() });
             let all = |seconds: fn(&Forecast) -> f64| -> Vec<Point> {
-                let of = self.forecasts.iter().filter(|f| f.schedule == schedule);
-                of.map(|f| point(f.workers, seconds(f), "forecast")).collect()
+                let of = || self.forecasts.iter().filter(|f| f.schedule == schedule);
+                // Of its own time with one worker, lest one disturbed measurement bend a whole line.
+                let alone = of().find(|f| f.workers == 1).map_or(alone, seconds);
+                of().map(|f| point(f.workers, seconds(f), alone, "forecast")).collect()
             };
             let (own, here) = (all(|f| f.seconds), all(|f| f.seconds_here));
-            let own =
-                Series { name: format!("{schedule}, forecast"), class, index: 4, points: own };
-            series.push(own);
-            let name = format!("{schedule}, forecast with this memory");
-            series.push(Series { name, class, index: 5, points: here });
+            let memory_binds =
+                self.forecasts.iter().any(|f| f.schedule == schedule && f.is_bound());
+            let name = format!("{schedule}, forecast");
+            series.push(Series { name, class, index: 4, points: own });
+            if memory_binds {
+                let name = format!("{schedule}, forecast with this memory");
+                series.push(Series { name, class, index: 5, points: here });
+            }
         }
         Diagram { title: title.into(), x, y, series }.render().unwrap_or_default()
     }
@@ -97,13 +102,17 @@ impl Scaling {
                     100.0 * (all / forecast.seconds - 1.0)
                 );
             }
+            let forecast_alone = at(1).map_or(alone, |f| f.seconds);
             if let Some(most) = self.forecasts.iter().rev().find(|f| f.schedule == schedule) {
                 sentence += &format!(
-                    "; forecast on {}: {:.1}, with this machine's memory {:.1}",
+                    "; forecast on {}: {:.1}",
                     most.workers,
-                    alone / most.seconds,
-                    alone / most.seconds_here
+                    forecast_alone / most.seconds
                 );
+                if most.is_bound() {
+                    let bound = forecast_alone / most.seconds_here;
+                    sentence += &format!(", with this machine's memory {bound:.1}");
+                }
             }
             said.push(sentence + ".");
         }
