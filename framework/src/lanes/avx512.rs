@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::{Found, RECORD, Record, SUMS, add_by_halves};
+use super::{Buffer, Found, RECORD, Record, SUMS, Selection, add_by_halves};
 
 /// Whether this processor has what the functions below need.
 #[inline]
@@ -12,184 +12,276 @@ pub fn is_available() -> bool {
         && is_x86_feature_detected!("popcnt")
 }
 
-/// Defines a search for the points whose displacement, summed in squares over all directions, is
-/// shorter than a radius. The names of the operations are those of the calling module.
-macro_rules! search {
-    ($name:ident, ($($parameter:ident),*), |$x:ident, $a:ident| $displacement:expr) => {
-        /// # Safety
-        /// AVX-512 F and VL and POPCNT are available, all slices have `found.searched` elements,
-        /// and `found.indices` has room for as many and one vector more.
-        #[target_feature(enable = "avx512f,avx512vl,popcnt")]
-        pub unsafe fn $name<const D: usize>(
-            points: [&[Scalar]; D],
-            $($parameter: [Scalar; D],)*
-            radius_squared: Scalar,
-            found: &mut Found,
-        ) {
-            const LANES: usize = Mask::BITS as usize;
-            let radius = set1(radius_squared);
-            let step = index_set1(LANES as i32);
-            let mut index = iota();
-            let mut count = found.count;
-            let room = found.indices.as_mut_ptr();
-            let whole = found.searched / LANES * LANES;
-            for j in (0..whole).step_by(LANES) {
-                let mut distance_squared = zero();
-                for $a in 0..D {
-                    // SAFETY: j + lanes is at most the length of the slice.
-                    let $x = unsafe { load(points[$a].as_ptr().add(j)) };
-                    let d = $displacement;
-                    distance_squared = fmadd(d, d, distance_squared);
-                }
-                let near = less::<_CMP_LT_OQ>(distance_squared, radius);
-                // SAFETY: count is at most j, and there is room for a vector past the last point.
-                unsafe { index_store(room.add(count).cast(), compress(near, index)) };
-                count += near.count_ones() as usize;
-                index = index_add(index, step);
-            }
-            let rest = found.searched - whole;
-            if rest > 0 {
-                let valid = Mask::MAX >> (LANES - rest);
-                let mut distance_squared = zero();
-                for $a in 0..D {
-                    // SAFETY: the valid lanes lie inside the slice; the others are not read.
-                    let $x = unsafe { load_some(valid, points[$a].as_ptr().add(whole)) };
-                    let d = $displacement;
-                    distance_squared = fmadd(d, d, distance_squared);
-                }
-                let near = less::<_CMP_LT_OQ>(distance_squared, radius) & valid;
-                // SAFETY: as above.
-                unsafe { index_store(room.add(count).cast(), compress(near, index)) };
-                count += near.count_ones() as usize;
-            }
-            found.count = count;
+/// Points of a vector.
+const LANES: usize = 16;
+
+/// The lanes from `j` on that hold one of `n` points.
+#[inline]
+fn valid(j: usize, n: usize) -> u16 {
+    if n - j < LANES { u16::MAX >> (LANES - (n - j)) } else { u16::MAX }
+}
+
+/// # Safety
+/// AVX-512 F and VL and POPCNT are available, all slices have `selected.found.searched` elements,
+/// and its indices and coordinates have room for as many and one vector more.
+#[target_feature(enable = "avx512f,avx512vl,popcnt")]
+pub unsafe fn near_box<const D: usize>(
+    points: [&[f32]; D],
+    lower: [f32; D],
+    upper: [f32; D],
+    radius_squared: f32,
+    selected: &mut Selection<D>,
+) {
+    let Selection { found, points: coordinates } = selected;
+    let (radius, step) = (_mm512_set1_ps(radius_squared), _mm512_set1_epi32(LANES as i32));
+    let mut index = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    let mut count = found.count;
+    for j in (0..found.searched).step_by(LANES) {
+        let valid = valid(j, found.searched);
+        let mut distance_squared = _mm512_setzero_ps();
+        let mut x = [_mm512_setzero_ps(); D];
+        for a in 0..D {
+            // SAFETY: the valid lanes lie inside the slice; the others are not read.
+            x[a] = unsafe { _mm512_maskz_loadu_ps(valid, points[a].as_ptr().add(j)) };
+            let below = _mm512_sub_ps(_mm512_set1_ps(lower[a]), x[a]);
+            let above = _mm512_sub_ps(x[a], _mm512_set1_ps(upper[a]));
+            let d = _mm512_max_ps(_mm512_max_ps(below, above), _mm512_setzero_ps());
+            distance_squared = _mm512_fmadd_ps(d, d, distance_squared);
         }
-    };
-}
-
-/// The searches for one scalar type, in terms of that type's operations.
-macro_rules! searches {
-    ($within:ident, $near_box:ident) => {
-        search!($within, (centre), |x, a| sub(x, set1(centre[a])));
-        search!($near_box, (lower, upper), |x, a| {
-            max(max(sub(set1(lower[a]), x), sub(x, set1(upper[a]))), zero())
-        });
-    };
-}
-
-mod double {
-    use std::arch::x86_64::{
-        __m256i, _CMP_LT_OQ, _mm256_add_epi32 as index_add,
-        _mm256_maskz_compress_epi32 as compress, _mm256_set1_epi32 as index_set1,
-        _mm256_setr_epi32, _mm256_storeu_si256 as index_store, _mm512_cmp_pd_mask as less,
-        _mm512_fmadd_pd as fmadd, _mm512_loadu_pd as load, _mm512_maskz_loadu_pd as load_some,
-        _mm512_max_pd as max, _mm512_set1_pd as set1, _mm512_setzero_pd as zero,
-        _mm512_sub_pd as sub,
-    };
-
-    use super::Found;
-
-    type Scalar = f64;
-    type Mask = u8;
-
-    #[inline]
-    #[target_feature(enable = "avx512f")]
-    fn iota() -> __m256i {
-        _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)
+        let near = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(distance_squared, radius) & valid;
+        // SAFETY: count is at most j, and there is room for a vector past the last point.
+        unsafe {
+            let to = found.indices.as_mut_ptr().add(count);
+            _mm512_storeu_si512(to.cast(), _mm512_maskz_compress_epi32(near, index));
+            for a in 0..D {
+                let to = coordinates[a].as_mut_ptr().add(count);
+                _mm512_storeu_ps(to, _mm512_maskz_compress_ps(near, x[a]));
+            }
+        }
+        count += near.count_ones() as usize;
+        index = _mm512_add_epi32(index, step);
     }
-
-    searches!(within_f64, near_box_f64);
+    found.count = count;
 }
 
-mod single {
-    use std::arch::x86_64::{
-        __m512i, _CMP_LT_OQ, _mm512_add_epi32 as index_add, _mm512_cmp_ps_mask as less,
-        _mm512_fmadd_ps as fmadd, _mm512_loadu_ps as load, _mm512_maskz_compress_epi32 as compress,
-        _mm512_maskz_loadu_ps as load_some, _mm512_max_ps as max, _mm512_set1_epi32 as index_set1,
-        _mm512_set1_ps as set1, _mm512_setr_epi32, _mm512_setzero_ps as zero,
-        _mm512_storeu_si512 as index_store, _mm512_sub_ps as sub,
-    };
-
-    use super::Found;
-
-    type Scalar = f32;
-    type Mask = u16;
-
-    #[inline]
-    #[target_feature(enable = "avx512f")]
-    fn iota() -> __m512i {
-        _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+/// # Safety
+/// AVX-512 F and VL and POPCNT are available, and the indices of `found` have room for as many as
+/// are selected and one vector more.
+#[target_feature(enable = "avx512f,avx512vl,popcnt")]
+pub unsafe fn within<const D: usize>(
+    selected: &Selection<D>,
+    centre: [f32; D],
+    radius_squared: f32,
+    found: &mut Found,
+) {
+    let Selection { found: Found { indices, count: n, .. }, points } = selected;
+    let radius = _mm512_set1_ps(radius_squared);
+    let mut count = found.count;
+    for j in (0..*n).step_by(LANES) {
+        let mut distance_squared = _mm512_setzero_ps();
+        for a in 0..D {
+            // SAFETY: a selection has coordinates for a vector past its last point.
+            let x = unsafe { _mm512_loadu_ps(points[a].as_ptr().add(j)) };
+            let d = _mm512_sub_ps(x, _mm512_set1_ps(centre[a]));
+            distance_squared = _mm512_fmadd_ps(d, d, distance_squared);
+        }
+        let near = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(distance_squared, radius) & valid(j, *n);
+        // SAFETY: as for the coordinates; count is at most j, and there is room for a vector past
+        // the last point.
+        unsafe {
+            let index = _mm512_loadu_si512(indices.as_ptr().add(j).cast());
+            let to = found.indices.as_mut_ptr().add(count);
+            _mm512_storeu_si512(to.cast(), _mm512_maskz_compress_epi32(near, index));
+        }
+        count += near.count_ones() as usize;
     }
-
-    searches!(within_f32, near_box_f32);
+    found.count = count;
 }
 
-pub use double::{near_box_f64, within_f64};
-pub use single::{near_box_f32, within_f32};
+/// Turns rows into columns.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn transpose(r: [__m512d; 8]) -> [__m512d; 8] {
+    /// Pairs of 128-bit parts (0, 2) of both, and (1, 3) of both.
+    const EVEN: i32 = 0b10_00_10_00;
+    const ODD: i32 = 0b11_01_11_01;
+    let mut columns = [_mm512_setzero_pd(); 8];
+    for odd in 0..2 {
+        // Elements s of rows (0, 1), (2, 3) ... side by side, s = odd, odd + 2 ...
+        let mut pairs = [_mm512_setzero_pd(); 4];
+        for k in 0..4 {
+            pairs[k] = if odd == 0 {
+                _mm512_unpacklo_pd(r[2 * k], r[2 * k + 1])
+            } else {
+                _mm512_unpackhi_pd(r[2 * k], r[2 * k + 1])
+            };
+        }
+        let [p, q, t, u] = pairs;
+        let (a, b) = (_mm512_shuffle_f64x2::<EVEN>(p, q), _mm512_shuffle_f64x2::<EVEN>(t, u));
+        columns[odd] = _mm512_shuffle_f64x2::<EVEN>(a, b);
+        columns[odd + 4] = _mm512_shuffle_f64x2::<ODD>(a, b);
+        let (a, b) = (_mm512_shuffle_f64x2::<ODD>(p, q), _mm512_shuffle_f64x2::<ODD>(t, u));
+        columns[odd + 2] = _mm512_shuffle_f64x2::<EVEN>(a, b);
+        columns[odd + 6] = _mm512_shuffle_f64x2::<ODD>(a, b);
+    }
+    columns
+}
+
+/// Turns rows into columns, in each half by itself.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn transpose_halves(r: [__m512; 8]) -> [__m512; 8] {
+    // 128-bit parts 0 and 2 of both in turns, and 1 and 3, in pairs of f32.
+    let even = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    let odd = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    let mut fours = [[_mm512_setzero_ps(); 4]; 2];
+    for (half, four) in fours.iter_mut().enumerate() {
+        let [a, b, c, d] = [r[4 * half], r[4 * half + 1], r[4 * half + 2], r[4 * half + 3]];
+        // Elements (0, 1) and (2, 3) of each part, of two rows side by side.
+        let (p, q) = (_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d));
+        let (t, u) = (_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d));
+        // Element s of four rows, in every part.
+        *four = [
+            _mm512_shuffle_ps::<0b01_00_01_00>(p, q),
+            _mm512_shuffle_ps::<0b11_10_11_10>(p, q),
+            _mm512_shuffle_ps::<0b01_00_01_00>(t, u),
+            _mm512_shuffle_ps::<0b11_10_11_10>(t, u),
+        ];
+    }
+    let mut columns = [_mm512_setzero_ps(); 8];
+    for s in 0..4 {
+        let (first, last) = (_mm512_castps_pd(fours[0][s]), _mm512_castps_pd(fours[1][s]));
+        columns[s] = _mm512_castpd_ps(_mm512_permutex2var_pd(first, even, last));
+        columns[s + 4] = _mm512_castpd_ps(_mm512_permutex2var_pd(first, odd, last));
+    }
+    columns
+}
 
 /// # Safety
 /// AVX-512 F is available, every index is inside `from`, there is a multiple of 8 of them, and
 /// every lane of `to` is at least as long as `indices`.
 #[target_feature(enable = "avx512f")]
-pub unsafe fn gather_f64(from: &[Record<f64>], indices: &[u32], to: &mut [Vec<f64>; RECORD]) {
-    /// Pairs of 128-bit parts (0, 2) of both, and (1, 3) of both.
-    const EVEN: i32 = 0b10_00_10_00;
-    const ODD: i32 = 0b11_01_11_01;
+pub unsafe fn gather_f64(from: &[Record<f64>], indices: &[u32], to: &mut [Buffer<f64>; RECORD]) {
     let (chunks, _) = indices.as_chunks::<8>();
     for (c, chunk) in chunks.iter().enumerate() {
-        // SAFETY: the indices are inside `from`; a record is one whole vector.
-        let r = chunk.map(|i| unsafe { _mm512_loadu_pd(from.as_ptr().add(i as usize).cast()) });
-        for odd in 0..2 {
-            // Elements s of records (0, 1), (2, 3) ... side by side, s = odd, odd + 2 ...
-            let pair = |k: usize| {
-                if odd == 0 {
-                    _mm512_unpacklo_pd(r[k], r[k + 1])
-                } else {
-                    _mm512_unpackhi_pd(r[k], r[k + 1])
-                }
+        let mut rows = [_mm512_setzero_pd(); 8];
+        for k in 0..8 {
+            // SAFETY: the index is inside `from`; a record is one whole vector.
+            rows[k] = unsafe { _mm512_loadu_pd(from.as_ptr().add(chunk[k] as usize).cast()) };
+        }
+        let columns = transpose(rows);
+        for s in 0..RECORD {
+            // SAFETY: 8 c + 8 is at most the number of indices, and the lane is as long.
+            unsafe { _mm512_storeu_pd(to[s].as_mut_ptr().add(8 * c), columns[s]) };
+        }
+    }
+}
+
+/// Gathers the first half of the records only.
+///
+/// # Safety
+/// As [`gather_f64`].
+#[target_feature(enable = "avx512f")]
+pub unsafe fn gather_half_f64(
+    from: &[Record<f64>],
+    indices: &[u32],
+    to: &mut [Buffer<f64>; RECORD],
+) {
+    // 128-bit parts 0 and 2 of both in turns, and 1 and 3.
+    let even = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    let odd = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    let (chunks, _) = indices.as_chunks::<8>();
+    for (c, chunk) in chunks.iter().enumerate() {
+        // Those of points k and k + 4.
+        let mut r = [_mm512_setzero_pd(); 4];
+        for k in 0..4 {
+            // SAFETY: the indices are inside `from`; half a record is half a vector.
+            r[k] = unsafe {
+                let lower = _mm256_loadu_pd(from.as_ptr().add(chunk[k] as usize).cast());
+                let upper = _mm256_loadu_pd(from.as_ptr().add(chunk[k + 4] as usize).cast());
+                _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(lower), upper)
             };
-            let [p, q, t, u] = [pair(0), pair(2), pair(4), pair(6)];
-            let (a, b) = (_mm512_shuffle_f64x2::<EVEN>(p, q), _mm512_shuffle_f64x2::<EVEN>(t, u));
-            let (c0, c4) = (_mm512_shuffle_f64x2::<EVEN>(a, b), _mm512_shuffle_f64x2::<ODD>(a, b));
-            let (a, b) = (_mm512_shuffle_f64x2::<ODD>(p, q), _mm512_shuffle_f64x2::<ODD>(t, u));
-            let (c2, c6) = (_mm512_shuffle_f64x2::<EVEN>(a, b), _mm512_shuffle_f64x2::<ODD>(a, b));
-            for (s, lane) in [(0, c0), (2, c2), (4, c4), (6, c6)] {
-                // SAFETY: 8 c + 8 is at most the number of indices, and the lane is as long.
-                unsafe { _mm512_storeu_pd(to[s + odd].as_mut_ptr().add(8 * c), lane) };
-            }
+        }
+        let [a, b] = [_mm512_unpacklo_pd(r[0], r[1]), _mm512_unpacklo_pd(r[2], r[3])];
+        let [p, q] = [_mm512_unpackhi_pd(r[0], r[1]), _mm512_unpackhi_pd(r[2], r[3])];
+        let columns = [
+            _mm512_permutex2var_pd(a, even, b),
+            _mm512_permutex2var_pd(p, even, q),
+            _mm512_permutex2var_pd(a, odd, b),
+            _mm512_permutex2var_pd(p, odd, q),
+        ];
+        for s in 0..RECORD / 2 {
+            // SAFETY: 8 c + 8 is at most the number of indices, and the lane is as long.
+            unsafe { _mm512_storeu_pd(to[s].as_mut_ptr().add(8 * c), columns[s]) };
         }
     }
 }
 
 /// # Safety
-/// As [`gather_f64`].
+/// As [`gather_f64`], with a multiple of 16 indices.
 #[target_feature(enable = "avx512f")]
-pub unsafe fn gather_f32(from: &[Record<f32>], indices: &[u32], to: &mut [Vec<f32>; RECORD]) {
-    let (chunks, _) = indices.as_chunks::<8>();
+pub unsafe fn gather_f32(from: &[Record<f32>], indices: &[u32], to: &mut [Buffer<f32>; RECORD]) {
+    let (chunks, _) = indices.as_chunks::<16>();
     for (c, chunk) in chunks.iter().enumerate() {
-        // SAFETY: the indices are inside `from`; a record is one whole 256-bit vector.
-        let r = chunk.map(|i| unsafe { _mm256_loadu_ps(from.as_ptr().add(i as usize).cast()) });
-        // Elements (0, 1) and (2, 3) of each half, of two records side by side.
-        let low = |k: usize| _mm256_unpacklo_ps(r[k], r[k + 1]);
-        let high = |k: usize| _mm256_unpackhi_ps(r[k], r[k + 1]);
-        // Element s of four records, in the lower half, and s + 4 in the upper.
-        let four = |k: usize| {
-            let [p, q, t, u] = [low(k), low(k + 2), high(k), high(k + 2)];
-            [
-                _mm256_shuffle_ps::<0b01_00_01_00>(p, q),
-                _mm256_shuffle_ps::<0b11_10_11_10>(p, q),
-                _mm256_shuffle_ps::<0b01_00_01_00>(t, u),
-                _mm256_shuffle_ps::<0b11_10_11_10>(t, u),
-            ]
-        };
-        let (first, last) = (four(0), four(4));
-        for s in 0..4 {
-            let lower = _mm256_permute2f128_ps::<0x20>(first[s], last[s]);
-            let upper = _mm256_permute2f128_ps::<0x31>(first[s], last[s]);
-            // SAFETY: 8 c + 8 is at most the number of indices, and the lanes are as long.
+        // Those of points k and k + 8.
+        let mut rows = [_mm512_setzero_ps(); 8];
+        for k in 0..8 {
+            // SAFETY: the indices are inside `from`; a record is half a vector.
+            let pair = unsafe {
+                let lower = _mm256_loadu_pd(from.as_ptr().add(chunk[k] as usize).cast());
+                let upper = _mm256_loadu_pd(from.as_ptr().add(chunk[k + 8] as usize).cast());
+                _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(lower), upper)
+            };
+            rows[k] = _mm512_castpd_ps(pair);
+        }
+        let columns = transpose_halves(rows);
+        for s in 0..RECORD {
+            // SAFETY: 16 c + 16 is at most the number of indices, and the lane is as long.
+            unsafe { _mm512_storeu_ps(to[s].as_mut_ptr().add(16 * c), columns[s]) };
+        }
+    }
+}
+
+/// The inverse of gathering whole records in order.
+///
+/// # Safety
+/// AVX-512 F is available; all of `from` have at least as many elements as `to`, a multiple of 8.
+#[target_feature(enable = "avx512f")]
+pub unsafe fn interleave_f64(from: [&[f64]; RECORD], to: &mut [Record<f64>]) {
+    for k in (0..to.len()).step_by(8) {
+        let mut rows = [_mm512_setzero_pd(); 8];
+        for s in 0..RECORD {
+            // SAFETY: k + 8 is at most the number of elements.
+            rows[s] = unsafe { _mm512_loadu_pd(from[s].as_ptr().add(k)) };
+        }
+        let records = transpose(rows);
+        for (i, record) in records.into_iter().enumerate() {
+            // SAFETY: k + 8 is at most the number of records, each one whole vector.
+            unsafe { _mm512_storeu_pd(to.as_mut_ptr().add(k + i).cast(), record) };
+        }
+    }
+}
+
+/// As [`interleave_f64`].
+///
+/// # Safety
+/// As [`interleave_f64`], with a multiple of 16 records.
+#[target_feature(enable = "avx512f")]
+pub unsafe fn interleave_f32(from: [&[f32]; RECORD], to: &mut [Record<f32>]) {
+    for k in (0..to.len()).step_by(16) {
+        let mut rows = [_mm512_setzero_ps(); 8];
+        for s in 0..RECORD {
+            // SAFETY: k + 16 is at most the number of elements.
+            rows[s] = unsafe { _mm512_loadu_ps(from[s].as_ptr().add(k)) };
+        }
+        // Each half holds a record: of points k + i and k + 8 + i.
+        for (i, pair) in transpose_halves(rows).into_iter().enumerate() {
+            let pair = _mm512_castps_pd(pair);
+            // SAFETY: k + 16 is at most the number of records, each half a vector.
             unsafe {
-                _mm256_storeu_ps(to[s].as_mut_ptr().add(8 * c), lower);
-                _mm256_storeu_ps(to[s + 4].as_mut_ptr().add(8 * c), upper);
+                let to = to.as_mut_ptr().add(k + i);
+                _mm256_storeu_pd(to.cast(), _mm512_castpd512_pd256(pair));
+                _mm256_storeu_pd(to.add(8).cast(), _mm512_extractf64x4_pd::<1>(pair));
             }
         }
     }

@@ -1,5 +1,7 @@
 //! Particles in cells, and all pairs of them found in two ways.
 
+use std::collections::HashSet;
+
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::{CellsOptions, Region, Run};
 use finegrain_framework::*;
@@ -93,6 +95,11 @@ impl<T: Real> Case<T> {
         let mut all = Vec::new();
         for id in 0..partition.len() {
             let block = self.cells.sub_domain(id);
+            let mut runs = Vec::new();
+            block.surroundings(&mut runs);
+            let around = seen(&runs);
+            let once: HashSet<_> = around.iter().collect();
+            assert_eq!(once.len(), around.len(), "nobody is around twice in the same place");
             let mut points = 0;
             for cell in block.cells() {
                 let mut runs = Vec::new();
@@ -101,6 +108,14 @@ impl<T: Real> Case<T> {
                     assert!(partition.sees(id, run.owner));
                     let [span] = partition.spans(run.owner) else { panic!("several spans") };
                     assert!(span.start <= run.span.start && run.span.end <= span.end);
+                }
+                let mut around = around.iter();
+                for candidate in seen(&runs) {
+                    let is_it = |&at: &(usize, [u64; 3])| at == candidate;
+                    assert!(
+                        around.any(|at| is_it(at)),
+                        "around in the order in which a cell sees them"
+                    );
                 }
                 points += cell.span.len();
                 all.push((id, cell.span, runs));
@@ -139,6 +154,15 @@ impl<T: Real> Case<T> {
         assert!(missed.is_empty(), "{what}: missed {missed:?} of {}", expected.len());
         assert!(found == expected, "{what}: {} pairs instead of {}", found.len(), expected.len());
     }
+}
+
+/// Points, and the bits of the shifts with which they are seen.
+fn seen(runs: &[Run]) -> Vec<(usize, [u64; 3])> {
+    let points = |run: &Run| {
+        let shift = run.shift.map(f64::to_bits);
+        run.span.range().map(move |i| (i, shift))
+    };
+    runs.iter().flat_map(points).collect()
 }
 
 /// A box, with blocks of a few particles.

@@ -8,12 +8,13 @@ use finegrain_framework::{
     ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, Stage, State,
 };
 
-use crate::candidates::{Candidates, Gathered, Layout};
 use crate::evaluation::{Alone, Piece};
 use crate::fields::Fields;
+use crate::gathered::{Gathered, Layout};
 use crate::kernel::adaptive::AdaptiveKernel;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::Quantity;
+use crate::surroundings::Surroundings;
 
 /// Most iterations for one particle; a few are usual.
 const MOST_ITERATIONS: usize = 100;
@@ -95,17 +96,10 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for AdaptiveDensity<T
         let grad_h = rates.column(self.grad_h).whole();
         let density = near.state(self.density).own().whole();
         let solver = &self.solver;
-        let range = solver.kernel.support() * solver.kernel.longest;
-        let first = near.spans()[0].start;
-        for cell in block.cells() {
-            scratch.candidates.collect(&self.gathered, near, &block, cell, range);
-            let own = cell.span.start - first..cell.span.end - first;
-            let written = [&mut smoothing_length[own.clone()], &mut grad_h[own.clone()]];
-            if let Err((k, needed)) = solver.write(&density[own.clone()], written, scratch) {
-                return Err(self.fault(near, own.start + k, needed));
-            }
-        }
-        Ok(())
+        scratch.surroundings.collect(&self.gathered, near, &block);
+        let written = [smoothing_length, grad_h];
+        let solved = solver.write(density, written, scratch);
+        solved.map_err(|(i, needed)| self.fault(near, i, needed))
     }
 }
 
@@ -120,8 +114,8 @@ struct Solver<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Solver<T, D> {
-    /// All particles of a cell, by the best instructions of this processor; in error, the number of
-    /// one in the cell and the smoothing length it would need.
+    /// All particles of a sub-domain, by the best instructions of this processor; in error, the number
+    /// of one of them and the smoothing length it would need.
     ///
     /// Not inlined, so that it is compiled once, and not again for every type of positions.
     #[inline(never)]
@@ -141,12 +135,17 @@ impl<T: Real, const D: usize> Solver<T, D> {
         [smoothing_length, grad_h]: [&mut [T]; 2],
         scratch: &mut Scratch<T, D>,
     ) -> Result<(), (usize, T)> {
-        let Scratch { candidates, neighbours, ones } = scratch;
-        for k in 0..density.len() {
-            let particle = candidates.particle(&self.layout, k);
-            let guess = self.ratio * root::<T, D>(self.mass / density[k]);
-            let solved = self.solve(candidates, neighbours, ones, &particle, guess);
-            (smoothing_length[k], grad_h[k]) = solved.map_err(|needed| (k, needed))?;
+        let Scratch { surroundings, neighbours, ones } = scratch;
+        neighbours.prepare(&self.layout, surroundings.sees_bodies);
+        for cell in 0..surroundings.cells.len() {
+            let own = surroundings.cells[cell].clone();
+            surroundings.select(own.clone(), self.kernel.support() * self.kernel.longest);
+            for k in own {
+                let particle = surroundings.particle(&self.layout, k);
+                let guess = self.ratio * root::<T, D>(self.mass / density[k]);
+                let solved = self.solve(surroundings, neighbours, ones, &particle, guess);
+                (smoothing_length[k], grad_h[k]) = solved.map_err(|needed| (k, needed))?;
+            }
         }
         Ok(())
     }
@@ -155,7 +154,7 @@ impl<T: Real, const D: usize> Solver<T, D> {
     #[inline(always)]
     fn solve(
         &self,
-        candidates: &Candidates<T, D>,
+        surroundings: &Surroundings<T, D>,
         neighbours: &mut Neighbours<T, D>,
         ones: &mut Vec<T>,
         particle: &Particle<T, D>,
@@ -171,7 +170,7 @@ impl<T: Real, const D: usize> Solver<T, D> {
             if h > reach {
                 // A little further, for the iterations to come.
                 reach = (T::of(1.1) * h).min(longest);
-                neighbours.find(&self.layout, candidates, particle, self.kernel.support() * reach);
+                neighbours.find(surroundings, particle, self.kernel.support() * reach);
                 ones.resize(neighbours.distance_squared().len().max(ones.len()), T::one());
             }
             neighbours.evaluate(&self.kernel.at(h));
@@ -229,7 +228,7 @@ pub(crate) fn root<T: Real, const D: usize>(x: T) -> T {
 
 /// Working memory of one worker.
 pub(crate) struct Scratch<T, const D: usize> {
-    candidates: Candidates<T, D>,
+    surroundings: Surroundings<T, D>,
     neighbours: Neighbours<T, D>,
     /// As many ones as there are lanes.
     ones: Vec<T>,
@@ -238,14 +237,14 @@ pub(crate) struct Scratch<T, const D: usize> {
 impl<T: Real, const D: usize> Default for Scratch<T, D> {
     fn default() -> Self {
         Self {
-            candidates: Candidates::default(),
+            surroundings: Surroundings::default(),
             neighbours: Neighbours::default(),
             ones: Vec::new(),
         }
     }
 }
 
-/// A cell's share, to be compiled for every instruction set.
+/// A sub-domain's share, to be compiled for every instruction set.
 struct Task<'s, T: Real, const D: usize> {
     solver: &'s Solver<T, D>,
     density: &'s [T],

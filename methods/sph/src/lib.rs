@@ -12,7 +12,7 @@
 //! | `term/` | one sum over neighbours each, reading like its equation |
 //! | `evaluation.rs` | the order of the terms and updates, from what they read and write |
 //! | `sweep.rs`, `sums.rs` | a rate stage: gathers what particles see once, and runs the terms over it |
-//! | `candidates.rs`, `neighbourhood.rs` | candidates of a cell, in records; neighbours of a particle, in lanes |
+//! | `gathered.rs`, `surroundings.rs`, `neighbourhood.rs` | what a sweep gathers; all that a sub-domain sees, in records; neighbours of a particle, in lanes |
 //! | [`kernel`] | smoothing functions |
 //! | [`body`], `wall.rs`, `wall_state.rs`, `surface_distance.rs` | bodies, and how the fluid feels them |
 //! | [`packing`] | lattices that are exactly periodic |
@@ -62,6 +62,7 @@ pub mod error;
 pub mod fields;
 pub mod fringe;
 pub mod gas;
+mod gathered;
 pub mod kernel;
 pub mod measure;
 pub mod model;
@@ -75,7 +76,6 @@ pub mod state_equation;
 
 mod adaptive_density;
 mod bins;
-mod candidates;
 mod correction;
 mod evaluation;
 mod gas_pacing;
@@ -88,6 +88,7 @@ mod quantity;
 mod start_check;
 mod sums;
 mod surface_distance;
+mod surroundings;
 mod sweep;
 mod term;
 mod wall;

@@ -4,6 +4,7 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::{Near, Real, State, Whole};
 
 use crate::fields::Fields;
+use crate::kernel::Kernel;
 use crate::physics::Fluid;
 
 /// Integrals over the fluid, without the particles that fill bodies.
@@ -168,8 +169,7 @@ pub fn largest_speed<T: Real, P: Real>(
 /// Number of neighbours within the range of interaction that a particle has on average, itself not
 /// counted; images through which a particle is seen several times count each.
 pub fn mean_neighbours<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> f64 {
-    // Pairs exactly the range apart do not interact.
-    let range = T::of(whole.domain.range()) * (T::one() - T::epsilon().sqrt());
+    let range = T::of(whole.domain.range()) * Kernel::<T>::cut();
     let points = whole.columns.points() as f64;
     let positions = whole.domain.positions().to_vec();
     let [pairs] = whole.sum(|near| {

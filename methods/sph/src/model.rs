@@ -30,11 +30,15 @@ use crate::state_equation::StateEquation;
 use crate::sweep::Sweep;
 use crate::wall::{Friction, NoSlip, Walls};
 
+/// Particles of a sub-domain: what it sees around is gathered once, which is worth more the more of them
+/// share it, and must stay in a core's second cache.
+const BLOCK_POINTS: usize = 256;
+
 /// A model and the handles of its fields.
 ///
 /// Positions may be more precise than the rest: `Sph<f32, f64>`, mixed precision, keeps positions and
 /// their motion in `f64`, and computes what particles do to each other in `f32` from positions
-/// relative to the cell that they are in.
+/// relative to the sub-domain that they are in.
 pub struct Sph<T: Real, P: Real = T> {
     /// To be run by the framework.
     pub model: Model<Cells<P>>,
@@ -201,7 +205,7 @@ fn build<T: Real, P: Real, const D: usize>(
         region: start.region.clone(),
         range,
         skin: scheme.skin * start.spacing,
-        block_points: 64,
+        block_points: BLOCK_POINTS,
     };
     let domain = Cells::new(&mut columns, &fields.position, options)?;
     start_check::check_periods(start, range)?;

@@ -3,17 +3,20 @@
 use std::ops::Index;
 
 use finegrain_framework::Real;
-use finegrain_framework::lanes::{Found, RECORD};
+use finegrain_framework::lanes::{Buffer, Found, RECORD};
 
-use crate::candidates::{ABSENT, Candidates, Layout};
+use crate::gathered::{ABSENT, Layout};
 use crate::kernel::Kernel;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::{Quantity, Values, component};
+use crate::surroundings::Surroundings;
 use crate::wall::{Extrapolation, VelocityInBodies};
 
 /// The particle whose rates are wanted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Particle<T, const D: usize> {
+    /// Its place among all that its sub-domain sees.
+    pub place: usize,
     pub position: [T; D],
     values: Values<T>,
     /// How it sees the velocities of wall particles.
@@ -23,8 +26,8 @@ pub(crate) struct Particle<T, const D: usize> {
 impl<T: Real, const D: usize> Particle<T, D> {
     /// A particle that sees bodies as they are.
     #[inline(always)]
-    pub fn new(position: [T; D], values: Values<T>) -> Self {
-        Self { position, values, no_slip: Extrapolation::none() }
+    pub fn new(place: usize, position: [T; D], values: Values<T>) -> Self {
+        Self { place, position, values, no_slip: Extrapolation::none() }
     }
 
     /// Whether it is part of a body.
@@ -64,15 +67,20 @@ pub(crate) struct Neighbours<T, const D: usize> {
     found: Found,
     /// Lanes in use, padding included.
     padded: usize,
-    distance_squared: Vec<T>,
-    gradient_factor: Vec<T>,
+    distance_squared: Buffer<T>,
+    gradient_factor: Buffer<T>,
     /// Empty unless every particle has its own smoothing length.
-    gradient_factor_of_others: Vec<T>,
-    /// Empty if no term wants it.
-    kernel: Vec<T>,
-    /// Per page of the candidates' records, a lane for each place. In the first, positions have
+    gradient_factor_of_others: Buffer<T>,
+    /// Whether a term wants the kernel itself; its lanes are empty if none does.
+    has_kernel: bool,
+    kernel: Buffer<T>,
+    /// Per page of the records, a lane for each place. In the first, positions have
     /// been replaced by `x_i - x_j`.
-    pages: Vec<[Vec<T>; RECORD]>,
+    pages: Vec<[Buffer<T>; RECORD]>,
+    /// Places in use of every page.
+    used: Vec<usize>,
+    /// Where quantities are in these pages; `ABSENT` also for the depth in bodies if there are none
+    /// around.
     places: [usize; Quantity::COUNT],
 }
 
@@ -81,24 +89,37 @@ impl<T: Real, const D: usize> Default for Neighbours<T, D> {
         Self {
             found: Found::default(),
             padded: 0,
-            distance_squared: Vec::new(),
-            gradient_factor: Vec::new(),
-            gradient_factor_of_others: Vec::new(),
-            kernel: Vec::new(),
+            distance_squared: Buffer::default(),
+            gradient_factor: Buffer::default(),
+            gradient_factor_of_others: Buffer::default(),
+            has_kernel: false,
+            kernel: Buffer::default(),
             pages: Vec::new(),
+            used: Vec::new(),
             places: [ABSENT; Quantity::COUNT],
         }
     }
 }
 
 impl<T: Real, const D: usize> Neighbours<T, D> {
-    /// Gathers the candidates that interact with `particle`, with the kernel's values for them.
-    /// `longest` is the longest smoothing length of any candidate, where they have their own.
+    /// Makes ready for the particles of a sub-domain that sees bodies, or does not.
+    pub fn prepare(&mut self, layout: &Layout, sees_bodies: bool) {
+        self.places = layout.places;
+        if !sees_bodies {
+            self.places[Quantity::WallDepth.index()] = ABSENT;
+        }
+        self.has_kernel = layout.has_kernel;
+        self.pages.resize_with(layout.pages.len(), Default::default);
+        self.used.clone_from(&layout.pages);
+    }
+
+    /// Gathers the particles near the cell at hand that interact with `particle`, with the kernel's
+    /// values for them. `longest` is the longest smoothing length of any of them, where they have
+    /// their own.
     #[inline(always)]
     pub fn gather(
         &mut self,
-        layout: &Layout,
-        candidates: &Candidates<T, D>,
+        surroundings: &Surroundings<T, D>,
         particle: &Particle<T, D>,
         kernels: &Kernels<T, D>,
         longest: T,
@@ -111,7 +132,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
                 (kernel.at(own), kernel.support() * own.max(longest))
             }
         };
-        self.find(layout, candidates, particle, radius);
+        self.find(surroundings, particle, radius);
         self.evaluate(&kernel);
         if let Kernels::Adaptive(kernel) = kernels {
             let (count, padded) = (self.found.len(), self.padded);
@@ -123,36 +144,40 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         }
     }
 
-    /// Gathers the candidates nearer to `particle` than `radius`.
+    /// Gathers the particles near the cell at hand that are nearer to `particle` than `radius`, m, and
+    /// perhaps some that are little further away.
     #[inline(always)]
     pub fn find(
         &mut self,
-        layout: &Layout,
-        candidates: &Candidates<T, D>,
+        surroundings: &Surroundings<T, D>,
         particle: &Particle<T, D>,
         radius: T,
     ) {
-        // On a lattice many pairs are exactly the support apart, and rounding would decide, for
-        // each of the two by itself, whether they interact: leave them all out.
-        let support = radius * (T::one() - T::epsilon().sqrt());
-        let positions = std::array::from_fn(|a| &candidates.position[a][..]);
-        T::within(positions, particle.position, support * support, &mut self.found);
+        surroundings.find(particle, radius * Kernel::<T>::cut(), &mut self.found);
         let padded = self.found.padded();
         self.padded = padded;
-        if self.distance_squared.len() < padded || self.pages.len() != layout.page_count {
-            self.grow(padded, layout);
+        if self.distance_squared.len() < padded {
+            self.grow(padded);
         }
-        for (page, records) in self.pages.iter_mut().zip(&candidates.pages) {
-            T::gather(records, &self.found, page);
+        let pages = self.pages.iter_mut().zip(&surroundings.pages).zip(&self.used);
+        for ((page, records), &used) in pages {
+            T::gather(records, &self.found, used, page);
         }
         let distance_squared = &mut self.distance_squared[..padded];
-        distance_squared.fill(T::zero());
         for a in 0..D {
             let x = particle.position[a];
             let difference = &mut self.pages[0][a][..padded];
-            for (d, r2) in difference.iter_mut().zip(&mut *distance_squared) {
-                *d = x - *d;
-                *r2 = d.mul_add(*d, *r2);
+            let lanes = difference.iter_mut().zip(&mut *distance_squared);
+            if a == 0 {
+                for (d, r2) in lanes {
+                    *d = x - *d;
+                    *r2 = *d * *d;
+                }
+            } else {
+                for (d, r2) in lanes {
+                    *d = x - *d;
+                    *r2 = d.mul_add(*d, *r2);
+                }
             }
         }
     }
@@ -175,19 +200,17 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     }
 
     #[cold]
-    fn grow(&mut self, length: usize, layout: &Layout) {
-        self.places = layout.places;
+    fn grow(&mut self, length: usize) {
         let has_own_lengths = self.places[Quantity::SmoothingLength.index()] != ABSENT;
-        self.pages.resize_with(layout.page_count, || std::array::from_fn(|_| Vec::new()));
         let all = self
             .pages
             .iter_mut()
             .flatten()
             .chain([&mut self.distance_squared, &mut self.gradient_factor])
-            .chain(layout.has_kernel.then_some(&mut self.kernel))
+            .chain(self.has_kernel.then_some(&mut self.kernel))
             .chain(has_own_lengths.then_some(&mut self.gradient_factor_of_others));
         for lanes in all {
-            lanes.resize(length.max(lanes.len()), T::zero());
+            lanes.resize(length);
         }
     }
 

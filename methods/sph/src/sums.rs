@@ -3,11 +3,12 @@
 
 use finegrain_framework::Real;
 
-use crate::candidates::{Candidates, Layout};
+use crate::gathered::Layout;
 use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
+use crate::surroundings::Surroundings;
 use crate::term::{AnyTerm, Term, Work};
 use crate::wall::{Extrapolation, Friction};
 
@@ -33,62 +34,64 @@ pub(crate) struct Sums<T, const D: usize> {
 pub(crate) type Written<'a, T> = [&'a mut [T]; Quantity::COUNT];
 
 impl<T: Real, const D: usize> Sums<T, D> {
-    /// Sums of the `count` particles of the cell whose candidates are in the scratch, written from
-    /// `place` on, by the best instructions of this processor.
+    /// Sums of the particles of the sub-domain whose surroundings are in the scratch, by the best
+    /// instructions of this processor.
     ///
     /// Not inlined, so that it is compiled once, and not again for every type of positions.
     #[inline(never)]
-    pub fn write(
-        &self,
-        count: usize,
-        place: usize,
-        written: &mut Written<'_, T>,
-        scratch: &mut Scratch<T, D>,
-        time: f64,
-    ) {
-        pulp::Arch::new().dispatch(Task { sums: self, count, place, written, scratch, time });
+    pub fn write(&self, written: &mut Written<'_, T>, scratch: &mut Scratch<T, D>, time: f64) {
+        pulp::Arch::new().dispatch(Task { sums: self, written, scratch, time });
     }
 
     #[inline(always)]
-    fn run(
-        &self,
-        count: usize,
-        place: usize,
-        written: &mut Written<'_, T>,
-        scratch: &mut Scratch<T, D>,
-        time: f64,
-    ) {
-        let Scratch { candidates, neighbours, work } = scratch;
-        let longest = match self.kernels {
-            Kernels::Uniform(_) => T::zero(),
-            Kernels::Adaptive(_) => candidates.largest(&self.layout, Quantity::SmoothingLength),
-        };
-        for k in 0..count {
-            let mut particle = candidates.particle(&self.layout, k);
-            if !self.acts_at(particle[Quantity::WallDepth]) {
-                for column in &mut written[..self.outputs.len()] {
-                    column[place + k] = T::zero();
+    fn run(&self, written: &mut Written<'_, T>, scratch: &mut Scratch<T, D>, time: f64) {
+        let Scratch { surroundings, neighbours, work } = scratch;
+        neighbours.prepare(&self.layout, surroundings.sees_bodies);
+        for cell in 0..surroundings.cells.len() {
+            let own = surroundings.cells[cell].clone();
+            surroundings.select(own.clone(), self.kernels.range());
+            let longest = match self.kernels {
+                Kernels::Uniform(_) => T::zero(),
+                Kernels::Adaptive(_) => {
+                    surroundings.largest(&self.layout, Quantity::SmoothingLength)
                 }
-                continue;
-            }
-            particle.no_slip = self.no_slip(&particle, candidates);
-            neighbours.gather(&self.layout, candidates, &particle, &self.kernels, longest);
-            let mut sums = self.sum(&particle, neighbours, work);
-            if let Some(imposed) = &self.imposed
-                && imposed.varies()
-                && !particle.is_wall()
-            {
-                imposed.add_varying(&particle, candidates.place(&particle), time, &mut sums);
-            }
-            for (column, &quantity) in written.iter_mut().zip(&self.outputs) {
-                column[place + k] = sums[quantity];
+            };
+            for k in own {
+                let mut particle = surroundings.particle(&self.layout, k);
+                if !self.acts_at(particle[Quantity::WallDepth]) {
+                    for column in &mut written[..self.outputs.len()] {
+                        column[k] = T::zero();
+                    }
+                    continue;
+                }
+                particle.no_slip = self.no_slip(&particle, surroundings);
+                neighbours.gather(surroundings, &particle, &self.kernels, longest);
+                let mut sums = self.sum(&particle, neighbours, work);
+                if let Some(imposed) = &self.imposed
+                    && imposed.varies()
+                    && !particle.is_wall()
+                {
+                    imposed.add_varying(
+                        &particle,
+                        surroundings.position(&particle),
+                        time,
+                        &mut sums,
+                    );
+                }
+                for (column, &quantity) in written.iter_mut().zip(&self.outputs) {
+                    column[k] = sums[quantity];
+                }
             }
         }
     }
 
     #[inline(always)]
-    fn no_slip(&self, i: &Particle<T, D>, candidates: &Candidates<T, D>) -> Extrapolation<T> {
-        if i.is_wall() { Extrapolation::none() } else { self.friction.at(candidates.place(i)) }
+    fn no_slip(&self, i: &Particle<T, D>, around: &Surroundings<T, D>) -> Extrapolation<T> {
+        if i.is_wall() || !around.sees_bodies {
+            Extrapolation::none()
+        } else {
+            self.friction.at(around.position(i))
+        }
     }
 
     /// Whether there are sums for a particle at this depth in a body.
@@ -132,7 +135,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
 
 /// Working memory of one worker.
 pub(crate) struct Scratch<T, const D: usize> {
-    pub candidates: Candidates<T, D>,
+    pub surroundings: Surroundings<T, D>,
     neighbours: Neighbours<T, D>,
     work: Work<T>,
 }
@@ -140,18 +143,16 @@ pub(crate) struct Scratch<T, const D: usize> {
 impl<T: Real, const D: usize> Default for Scratch<T, D> {
     fn default() -> Self {
         Self {
-            candidates: Candidates::default(),
+            surroundings: Surroundings::default(),
             neighbours: Neighbours::default(),
             work: Work::default(),
         }
     }
 }
 
-/// One cell's share of a sweep, to be compiled for every instruction set.
+/// A sub-domain's share of a sweep, to be compiled for every instruction set.
 struct Task<'s, 'n, T: Real, const D: usize> {
     sums: &'s Sums<T, D>,
-    count: usize,
-    place: usize,
     written: &'s mut Written<'n, T>,
     scratch: &'s mut Scratch<T, D>,
     time: f64,
@@ -162,6 +163,6 @@ impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.sums.run(self.count, self.place, self.written, self.scratch, self.time);
+        self.sums.run(self.written, self.scratch, self.time);
     }
 }

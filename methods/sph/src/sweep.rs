@@ -1,4 +1,4 @@
-//! A rate stage of SPH: gathers what the particles of a cell see once, then lets every term of the
+//! A rate stage of SPH: gathers what the particles of a sub-domain see once, then lets every term of the
 //! scene run over it.
 
 use finegrain_framework::space::Cells;
@@ -6,8 +6,8 @@ use finegrain_framework::{
     ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real,
 };
 
-use crate::candidates::Gathered;
 use crate::fields::Fields;
+use crate::gathered::Gathered;
 use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::Quantity;
@@ -101,22 +101,15 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for Sweep<T, P, D> {
         for (column, &rate) in written.iter_mut().zip(&self.outputs) {
             *column = rates.column(rate).whole();
         }
-        let range = self.sums.kernels.range();
-        let first = near.spans()[0].start;
-        let own_depth = self.gathered.wall_depth().map(|depth| near.state(depth).own().whole());
-        for cell in block.cells() {
-            let (place, count) = (cell.span.start - first, cell.span.len());
-            if let Some(depth) = own_depth
-                && !depth[place..place + count].iter().any(|&depth| self.sums.acts_at(depth))
-            {
-                for column in &mut written[..self.outputs.len()] {
-                    column[place..place + count].fill(T::zero());
-                }
-                continue;
+        let depth = self.gathered.wall_depth().map(|depth| near.state(depth).own().whole());
+        if depth.is_some_and(|depth| !depth.iter().any(|&depth| self.sums.acts_at(depth))) {
+            for column in &mut written[..self.outputs.len()] {
+                column.fill(T::zero());
             }
-            scratch.candidates.collect(&self.gathered, near, &block, cell, range);
-            self.sums.write(count, place, &mut written, scratch, moment.stage_time);
+            return Ok(());
         }
+        scratch.surroundings.collect(&self.gathered, near, &block);
+        self.sums.write(&mut written, scratch, moment.stage_time);
         Ok(())
     }
 }

@@ -57,27 +57,47 @@ impl<'a, T: Real> CellBlock<'a, T> {
     /// always in the same order: images plane by plane, row by row. A thin periodic box shows
     /// the same particles several times, with different shifts.
     pub fn candidates(&self, cell: Cell, runs: &mut Vec<Run>) {
+        let at = self.cells.lattice.cell_sorted(self.cells.cells[cell.index].0);
+        self.seen_from(at, at, runs);
+    }
+
+    /// All particles that may lie within range of any particle of the block, as
+    /// [`CellBlock::candidates`] gives them for one of its cells: those of a cell are among them, in
+    /// the same order.
+    pub fn surroundings(&self, runs: &mut Vec<Run>) {
+        let lattice = &self.cells.lattice;
+        let block = lattice.block_at(self.cells.blocks[self.id].0);
+        let first: [i64; 3] = std::array::from_fn(|a| block[a] * lattice.block[a]);
+        let last =
+            std::array::from_fn(|a| (first[a] + lattice.block[a]).min(lattice.counts[a]) - 1);
+        self.seen_from(first, last, runs);
+    }
+
+    /// Particles of all cells within reach of those from `first` to `last`.
+    fn seen_from(&self, first: [i64; 3], last: [i64; 3], runs: &mut Vec<Run>) {
         runs.clear();
         let cells = self.cells;
         let lattice = &cells.lattice;
-        let [i, j, k] = lattice.cell_sorted(cells.cells[cell.index].0);
-        let [rx, ry, rz] = lattice.reach;
-        for dk in -rz..=rz {
-            let Some((k, z)) = lattice.image(2, k + dk) else {
+        let points = cells.partition.points();
+        let [xs, ys, zs] = std::array::from_fn(|a| {
+            let reach = lattice.reach[a];
+            first[a] - reach..=last[a] + reach
+        });
+        for k in zs {
+            let Some((k, z)) = lattice.image(2, k) else {
                 continue;
             };
-            for dj in -ry..=ry {
-                let Some((j, y)) = lattice.image(1, j + dj) else {
+            for j in ys.clone() {
+                let Some((j, y)) = lattice.image(1, j) else {
                     continue;
                 };
-                for di in -rx..=rx {
-                    let Some((i, x)) = lattice.image(0, i + di) else {
+                for i in xs.clone() {
+                    let Some((i, x)) = lattice.image(0, i) else {
                         continue;
                     };
                     let Some(index) = cells.cell_table.get(lattice.key([i, j, k])) else {
                         continue;
                     };
-                    let points = cells.partition.points();
                     let block = lattice.block_key(lattice.block_of([i, j, k]));
                     let run = Run {
                         owner: cells

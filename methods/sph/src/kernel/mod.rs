@@ -109,8 +109,8 @@ impl SmoothingFunction {
 pub struct Kernel<T> {
     function: SmoothingFunction,
     smoothing_length: T,
-    /// kappa^2.
-    support_squared: T,
+    /// Square of the radius, in smoothing lengths, from which on lanes are zero.
+    cut_squared: T,
     /// 1 / h^2.
     inverse_h_squared: T,
     /// alpha_d, for `W`.
@@ -138,7 +138,7 @@ impl<T: Real> Kernel<T> {
         Kernel {
             function,
             smoothing_length,
-            support_squared: T::of(function.support() * function.support()),
+            cut_squared: (T::of(function.support()) * Self::cut()).powi(2),
             inverse_h_squared: T::of(1.0 / (h * h)),
             alpha: T::of(alpha),
             alpha_over_h_squared: T::of(alpha / (h * h)),
@@ -156,6 +156,13 @@ impl<T: Real> Kernel<T> {
         T::of(self.function.support()) * self.smoothing_length
     }
 
+    /// Share of the support radius from which on lanes are zero, a little less than 1: on a lattice many
+    /// pairs are exactly the support apart, and rounding would decide, for each of the two by itself,
+    /// whether they interact, and for the search, which is made in `f32`, whether to look at them.
+    pub fn cut() -> T {
+        T::one() - T::epsilon().sqrt().max(T::of(1e-5))
+    }
+
     /// `W` at the distance `q h`, for `q >= 0`: the definition, one value at a time.
     pub fn w(&self, q: T) -> T {
         self.alpha * with_profile!(self.function, P => P::f(q))
@@ -168,8 +175,8 @@ impl<T: Real> Kernel<T> {
 
     /// Writes `W` and `F` for each squared distance.
     ///
-    /// Both are zero where the distance is the support radius or more, so a block is padded with
-    /// infinity. A distance that is NaN gives NaN.
+    /// Both are zero where the distance is the support radius or more, or shorter by the share that
+    /// [`Kernel::cut`] leaves out, so a block is padded with infinity. A distance that is NaN gives NaN.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -208,10 +215,6 @@ impl<T: Real> Kernel<T> {
         let (f, df_dq_over_q) = P::lane(q_squared);
         let w = self.alpha * f;
         let gradient_factor = self.alpha_over_h_squared * df_dq_over_q;
-        if q_squared >= self.support_squared {
-            (T::zero(), T::zero())
-        } else {
-            (w, gradient_factor)
-        }
+        if q_squared >= self.cut_squared { (T::zero(), T::zero()) } else { (w, gradient_factor) }
     }
 }

@@ -263,13 +263,32 @@ fn single_precision_agrees_with_double() {
         let (mut w_single, mut factor_single) = (vec![0.0; lanes], vec![0.0; lanes]);
         kernel.evaluate(&distance_squared, &mut w, &mut factor);
         single.evaluate(&rounded, &mut w_single, &mut factor_single);
+        let cut = f64::from(Kernel::<f32>::cut()) * kernel.support_radius();
         for lane in 0..lanes {
+            let distance = distance_squared[lane].sqrt();
+            if distance >= cut && distance < kernel.support_radius() {
+                assert_eq!((w_single[lane], factor_single[lane]), (0.0, 0.0));
+                continue;
+            }
             let w_error = (f64::from(w_single[lane]) - w[lane]).abs() / w[0].abs();
             let factor_error =
                 (f64::from(factor_single[lane]) - factor[lane]).abs() / factor[0].abs();
             assert!(w_error < 2e-6, "{function:?}: W is off by {w_error:e}");
             assert!(factor_error < 2e-6, "{function:?}: F is off by {factor_error:e}");
         }
+    }
+}
+
+#[test]
+fn pairs_on_the_edge_do_not_interact() {
+    assert!(Kernel::<f64>::cut() > 0.999_98 && Kernel::<f32>::cut() > 0.999_5);
+    for (_, _, kernel) in kernels() {
+        let cut = Kernel::<f64>::cut() * kernel.support_radius();
+        let squared = [1.0 - 1e-12, 1.0 + 1e-12].map(|share| (share * cut).powi(2));
+        let (mut w, mut factor) = ([f64::NAN; 2], [f64::NAN; 2]);
+        kernel.evaluate(&squared, &mut w, &mut factor);
+        assert!(w[0] > 0.0 && factor[0] < 0.0);
+        assert_eq!((w[1], factor[1]), (0.0, 0.0));
     }
 }
 

@@ -28,6 +28,7 @@ pub(crate) mod wall_velocity;
 pub(crate) mod weighted;
 
 use finegrain_framework::Real;
+use finegrain_framework::lanes::Buffer;
 
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
@@ -208,7 +209,7 @@ terms!(
 
 /// Lanes that a term works with: a weight for each neighbour.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Work<T>([Vec<T>; 2]);
+pub(crate) struct Work<T>([Buffer<T>; 2]);
 
 impl<T: Real> Work<T> {
     /// Two work lanes of `length` neighbours, holding whatever they held.
@@ -216,8 +217,8 @@ impl<T: Real> Work<T> {
     pub fn lanes(&mut self, length: usize) -> [&mut [T]; 2] {
         let [first, second] = &mut self.0;
         if first.len() < length {
-            first.resize(length, T::zero());
-            second.resize(length, T::zero());
+            first.resize(length);
+            second.resize(length);
         }
         [&mut first[..length], &mut second[..length]]
     }
