@@ -204,9 +204,8 @@ impl NavierStokes {
         [0, 1, 2].map(|a| match mesh.sides().get(a).map(|side| side.spread) {
             Some(Spread::Cells) if i == Some(a) => Beyond::Walls,
             Some(Spread::Cells) => Beyond::HalfWay([0, 1].map(|end| match i {
-                // The mean of both sides is the velocity of the wall.
-                Some(i) => Ghost { keep: -1.0, add: 2.0 * self.wall_velocity[a][end][i] },
-                None => Ghost { keep: 1.0, add: 0.0 },
+                Some(i) => Ghost::with_value_at_wall(self.wall_velocity[a][end][i]),
+                None => Ghost::SAME,
             })),
             _ => Beyond::Periodic,
         })

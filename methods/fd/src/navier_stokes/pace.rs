@@ -28,12 +28,16 @@ impl Limit {
         };
         let terms = central::second_derivative(order).into_iter().zip(1..);
         let second: f64 = terms.map(|(b, k)| if k % 2 == 1 { 4.0 * value(b) } else { 0.0 }).sum();
+        // Next to a wall, where a ghost point lies on a parabola, `u_k = (-r)^k` decays at `2 + r + 1 / r` with
+        // `r^2 / 3 + 2 r = 1`.
+        let at_wall = 8.0 / 3f64.sqrt();
+        let second = |a: usize| if mesh.is_periodic()[a] { second } else { at_wall };
         let of_axis = |a: usize, rate: f64| if a < mesh.dims() { rate } else { 0.0 };
         let h = mesh.spacing();
         Self {
             integrator: equation.integrator,
             turn: [0, 1, 2].map(|a| of_axis(a, turn / h[a])),
-            decay: [0, 1, 2].map(|a| of_axis(a, equation.viscosity * second / (h[a] * h[a]))),
+            decay: [0, 1, 2].map(|a| of_axis(a, equation.viscosity * second(a) / (h[a] * h[a]))),
         }
     }
 

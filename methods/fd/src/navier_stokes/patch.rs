@@ -12,21 +12,34 @@ pub(crate) enum Beyond {
     /// Walls, through which the field, a velocity on the faces of cells, does not go: the first point lies
     /// on the lower wall, and one past the last on the upper.
     Walls,
-    /// Walls half a spacing away: `keep` times what is as far inside, plus `add`, for the lower and upper end.
+    /// Walls half a spacing away, at the lower and upper end. Across them operators read one point; what lies
+    /// further beyond has no meaning.
     HalfWay([Ghost; 2]),
 }
 
-/// How a point beyond an end follows from its mirror image inside.
+/// How a point beyond an end follows from its mirror image inside: `keep` times that, plus `next` times what is
+/// one further inside, plus `add`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ghost {
-    pub keep: f64,
-    pub add: f64,
+    keep: f64,
+    next: f64,
+    add: f64,
+}
+
+impl Ghost {
+    /// The same as inside.
+    pub const SAME: Self = Self { keep: 1.0, next: 0.0, add: 0.0 };
+
+    /// On the parabola through `value` at the wall and the two points before it.
+    pub fn with_value_at_wall(value: f64) -> Self {
+        Self { keep: -2.0, next: 1.0 / 3.0, add: 8.0 / 3.0 * value }
+    }
 }
 
 impl Beyond {
     /// For point `i` outside `0..n`: the point that it follows from, if any, and how.
     fn mirrored(&self, i: isize, n: isize) -> (Option<isize>, Ghost) {
-        let same = Ghost { keep: 1.0, add: 0.0 };
+        let same = Ghost::SAME;
         match self {
             Self::Periodic => (Some(i.rem_euclid(n)), same),
             Self::Walls if i == n => (None, same),
@@ -130,21 +143,38 @@ impl<T: Real> Patch<T> {
         }
         let (source, ghost) = beyond.mirrored(i, n);
         let Some(source) = source else { return self.0[to..to + length].fill(T::zero()) };
-        let from = (to as isize + (source - i) * stride as isize) as usize;
+        let at = |line: isize| (to as isize + (line - i) * stride as isize) as usize;
+        let from = at(source);
         self.0.copy_within(from..from + length, to);
-        let (keep, add) = (T::of(ghost.keep), T::of(ghost.add));
+        let [keep, add] = [ghost.keep, ghost.add].map(T::of);
         self.0[to..to + length].iter_mut().for_each(|u| *u = keep * *u + add);
+        if ghost.next != 0.0 {
+            // What lies inside is after the lower end and before the upper one.
+            let (ghosts, inside) = if i < 0 {
+                let (before, after) = self.0.split_at_mut(at(source + 1));
+                (&mut before[to..to + length], &after[..length])
+            } else {
+                let (before, after) = self.0.split_at_mut(to);
+                let next = at(source - 1);
+                (&mut after[..length], &before[next..next + length])
+            };
+            let factor = T::of(ghost.next);
+            ghosts.iter_mut().zip(inside).for_each(|(u, &v)| *u += factor * v);
+        }
     }
 }
 
 fn ends_of_row<T: Real>(row: &mut [T], extent: &Extent, beyond: &Beyond) {
     let (n, reach) = (extent.shape[0], extent.reach[0]);
     for depth in 0..reach {
-        for i in [-1 - depth as isize, (n + depth) as isize] {
+        for (i, inward) in [(-1 - depth as isize, 1), ((n + depth) as isize, -1)] {
             let (source, ghost) = beyond.mirrored(i, n as isize);
             let at = |i: isize| (i + reach as isize) as usize;
-            row[at(i)] = source
-                .map_or(T::zero(), |source| T::of(ghost.keep) * row[at(source)] + T::of(ghost.add));
+            row[at(i)] = source.map_or(T::zero(), |source| {
+                let [keep, next, add] = [ghost.keep, ghost.next, ghost.add].map(T::of);
+                let next = if ghost.next == 0.0 { next } else { next * row[at(source + inward)] };
+                keep * row[at(source)] + add + next
+            });
         }
     }
 }
