@@ -96,11 +96,12 @@ fn vortices_decay_in_the_order_of_the_operators_without_divergence() {
 /// From the start-up to the steady state, which takes `L^2 / nu` = 1 s.
 #[test]
 fn flow_between_plates_is_of_second_order() {
-    for (scene, most) in [("couette", 2e-3), ("poiseuille", 4e-3)] {
+    // Of poiseuille the error at walls, of third order, has the other sign: its order comes up from below.
+    for (scene, within, most) in [("couette", 0.1, 3e-4), ("poiseuille", 0.2, 3e-4)] {
         let [coarse, fine] =
-            ["10", "20"].map(|n| errors(scene, &[("resolution", n)])["velocity_l2"]);
+            ["20", "40"].map(|n| errors(scene, &[("resolution", n)])["velocity_l2"]);
         let measured = (coarse / fine).log2();
-        assert!((measured - 2.0).abs() < 0.1 && fine < most, "{scene}: {measured} {fine}");
+        assert!((measured - 2.0).abs() < within && fine < most, "{scene}: {measured} {fine}");
     }
     let until = Orders { until: Some(2.0), ..Orders::default() };
     let steady = run("couette", &[("resolution", "8")], until);
