@@ -1,7 +1,15 @@
 //! Lid-driven cavity: a unit square of fluid under a lid at y = 1 that moves along x at speed 1.
 
+use std::f64::consts::PI;
+
+use finegrain_framework::run::History;
+
+use profiles::{Profiles, RE_100, RE_1000};
+
 use super::parameter::{Parameter, Parameters};
 use super::report::Report;
+
+mod profiles;
 
 /// Parameters that every method shares.
 pub const PARAMETERS: [Parameter; 2] = [
@@ -54,6 +62,42 @@ impl Cavity {
         report.result("u_min", found.u_min, reference.map(|r| r.u_min));
         report.result("v_max", found.v_max, reference.map(|r| r.v_max));
         report.result("v_min", found.v_min, reference.map(|r| r.v_min));
+    }
+
+    /// Adds `profiles_l2`: L2 of the difference of the velocities on the lines through the middle, `u` on
+    /// x = 1/2 as a function of y and `v` on y = 1/2 as one of x, from those of the reference at its
+    /// stations, over the L2 of these, where there are some.
+    pub fn judge_profiles(
+        &self,
+        report: &mut Report,
+        u: impl Fn(f64) -> f64,
+        v: impl Fn(f64) -> f64,
+    ) {
+        let Some(Profiles { upright, across }) = self.reference_profiles() else { return };
+        let upright = upright.iter().map(|&(y, wanted)| (u(y), wanted));
+        let across = across.iter().map(|&(x, wanted)| (v(x), wanted));
+        let (mut difference, mut size) = (0.0, 0.0);
+        for (found, wanted) in upright.chain(across) {
+            difference += (found - wanted).powi(2);
+            size += wanted * wanted;
+        }
+        report.error("profiles_l2", (difference / size).sqrt());
+    }
+
+    fn reference_profiles(&self) -> Option<Profiles> {
+        let known = [(100.0, RE_100), (1000.0, RE_1000)];
+        known.into_iter().find(|(reynolds, _)| *reynolds == self.reynolds).map(|(_, all)| all)
+    }
+
+    /// Whether the kinetic energy, sampled once in a unit of time, has come so near to that of steady flow that
+    /// `tolerance` of it is missing at most: what is left decays as `exp(-2 pi^2 t / Re)` or faster.
+    pub fn is_steady(&self, histories: &[History], tolerance: f64) -> bool {
+        let energy: Vec<f64> =
+            histories[0].column("kinetic_energy").map(Iterator::collect).unwrap_or_default();
+        let most = tolerance * (2.0 * PI * PI / self.reynolds).min(1.0);
+        let is_small = |change: f64, energy: f64| change.abs() < most * energy;
+        // Twice, for it may turn.
+        matches!(energy[..], [.., a, b, c] if is_small(b - a, c) && is_small(c - b, c))
     }
 
     /// The extrema from an independent solution, where there is one.

@@ -8,6 +8,7 @@ pub mod burgers;
 pub mod cavity;
 pub mod channel;
 pub mod channel_cylinder;
+pub mod cubic;
 pub mod cylinder;
 pub mod dam_break;
 pub mod double_shear_layer;
@@ -211,6 +212,7 @@ pub const SCENES: &[Scene] = &[
         methods: &[
             Method::sph(sph::taylor_green::parameters, sph::taylor_green::prepare),
             Method::lbm(lbm::taylor_green::parameters, lbm::taylor_green::prepare),
+            Method::fd(fd::taylor_green::parameters, fd::taylor_green::prepare),
         ],
     },
     Scene {
@@ -262,6 +264,7 @@ pub const SCENES: &[Scene] = &[
         methods: &[
             Method::sph(sph::channel::parameters, sph::channel::prepare_couette),
             Method::lbm(lbm::channel::parameters, lbm::channel::prepare_couette),
+            Method::fd(fd::channel::parameters, fd::channel::prepare_couette),
         ],
     },
     Scene {
@@ -270,6 +273,7 @@ pub const SCENES: &[Scene] = &[
         methods: &[
             Method::sph(sph::channel::parameters, sph::channel::prepare_poiseuille),
             Method::lbm(lbm::channel::parameters, lbm::channel::prepare_poiseuille),
+            Method::fd(fd::channel::parameters, fd::channel::prepare_poiseuille),
         ],
     },
     Scene {
@@ -278,6 +282,7 @@ pub const SCENES: &[Scene] = &[
         methods: &[
             Method::sph(sph::cavity::parameters, sph::cavity::prepare),
             Method::lbm(lbm::cavity::parameters, lbm::cavity::prepare),
+            Method::fd(fd::cavity::parameters, fd::cavity::prepare),
         ],
     },
     Scene {
@@ -291,10 +296,10 @@ pub const SCENES: &[Scene] = &[
     Scene {
         name: "double-shear-layer",
         summary: "layers of shear that roll up in a periodic box (Minion & Brown 1997)",
-        methods: &[Method::lbm(
-            lbm::double_shear_layer::parameters,
-            lbm::double_shear_layer::prepare,
-        )],
+        methods: &[
+            Method::lbm(lbm::double_shear_layer::parameters, lbm::double_shear_layer::prepare),
+            Method::fd(fd::double_shear_layer::parameters, fd::double_shear_layer::prepare),
+        ],
     },
     Scene {
         name: "sphere-array",

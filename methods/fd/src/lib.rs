@@ -13,6 +13,8 @@
 //! | `line.rs` | derivatives along one axis, with its boundary conditions |
 //! | `sweep.rs`, `row.rs` | the stage that evaluates an equation: rows of a tile, packs of a row |
 //! | `stability.rs` | the longest stable time step |
+//! | `navier_stokes/` | incompressible flow on a staggered grid: its terms, stages and model |
+//! | `poisson/` | the pressure, by waves along each axis |
 //! | [`measure`] | integrals and extremes |
 //! | [`model`] | builds a framework model |
 //!
@@ -50,6 +52,8 @@ pub mod operator;
 
 mod around;
 mod line;
+mod navier_stokes;
+mod poisson;
 mod row;
 mod stability;
 mod sweep;
@@ -60,5 +64,7 @@ pub use equation::{Advection, Burgers, Drift, Equation, Gas, GasEnd, GasState, H
 pub use error::FdError;
 pub use mesh::{Mesh, Side, Spread};
 pub use model::{Compiled, Fd, Parts};
+pub use navier_stokes::NavierStokes;
 pub use operator::Order;
 pub use operator::face::Face;
+pub use operator::staggered::StaggeredOrder;

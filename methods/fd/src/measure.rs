@@ -1,7 +1,7 @@
 //! Scalar quantities of a field, as deterministic reductions.
 
 use finegrain_framework::space::Grid;
-use finegrain_framework::{State, Whole};
+use finegrain_framework::{Rate, State, Whole};
 
 use crate::model::{Compiled, Parts};
 
@@ -54,4 +54,20 @@ pub fn totals<T: Compiled>(
         most
     });
     Totals { integral, square, least: -least, most }
+}
+
+/// Largest magnitude of a derived field, which must be up to date; NaN if there is one.
+pub fn largest<T: Compiled>(whole: &mut Whole<'_, Grid>, field: Rate<T>) -> f64 {
+    let [most] = whole.max(|near| {
+        let rows = near.rate_rows(field);
+        let mut most = 0.0f64;
+        for (j, k) in near.sub_domain().rows() {
+            for u in rows.row(j as isize, k as isize) {
+                let size = u.as_f64().abs();
+                most = if size > most || size.is_nan() { size } else { most };
+            }
+        }
+        [most]
+    });
+    most
 }

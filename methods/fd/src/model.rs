@@ -5,6 +5,7 @@ use finegrain_framework::{
     Columns, Evolution, Handle, Integrator, Model, Pacing, Plan, Rate, Real, RigidPace, Stage,
     State, Step,
 };
+use realfft::FftNum;
 
 use crate::around::Coefficients;
 use crate::boundary::{Boundary, Condition};
@@ -18,8 +19,10 @@ use crate::equation::wave::Waves;
 use crate::error::FdError;
 use crate::line::{Ends, Line};
 use crate::mesh::{AXES, Mesh, Spread};
+use crate::navier_stokes::{Fields, Stages};
 use crate::operator::face::{Face, Upwind1, Upwind3, Weno5, Weno5Z};
 use crate::operator::sbp::Closure;
+use crate::operator::staggered::StaggeredOrder;
 use crate::operator::{Order, value};
 use crate::stability;
 use crate::sweep::{Form, Sweep};
@@ -44,8 +47,9 @@ pub struct Parts<T: Real> {
     pub unknowns: Vec<State<T>>,
     /// Their rates; or, with a step that computes the next state at once, the states before.
     pub rates: Vec<Rate<T>>,
-    /// The second derivative in time, for those who look, of an equation of second order.
-    pub acceleration: Option<Rate<T>>,
+    /// Fields for those who look: of an equation of second order the second derivative in time, of
+    /// incompressible flow those of [`crate::NavierStokes::DERIVED`].
+    pub derived: Vec<Rate<T>>,
     /// Weights of the points along x, y and z in integrals: those of the norm of the difference operators.
     pub weights: [Vec<f64>; 3],
 }
@@ -182,7 +186,7 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
         let step = step.swap(u, before).build();
         let plan = Plan { prologue: Some(prologue), step, derived: Some(derived) };
         let mut fd = self.finish(name, plan, Box::new(RigidPace(time_step)))?;
-        fd.parts.acceleration = Some(acceleration);
+        fd.parts.derived = vec![acceleration];
         Ok(fd)
     }
 
@@ -205,7 +209,7 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
             *weights = (0..side.points).map(weight).collect();
         }
         let mesh = mesh.clone();
-        let parts = Parts { mesh, unknowns, rates: out, acceleration: None, weights };
+        let parts = Parts { mesh, unknowns, rates: out, derived: Vec::new(), weights };
         Ok(Fd { model, parts })
     }
 
@@ -272,7 +276,11 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
 
 /// A scalar that kernels are compiled for: once, in this crate, and not anew in every crate that uses
 /// it, because there are many of them.
-pub trait Compiled: Real {
+pub trait Compiled: Real + FftNum {
+    /// The stages of incompressible flow.
+    #[doc(hidden)]
+    fn navier_stokes(fields: &Fields<Self>) -> Stages;
+
     /// The stage of the heat equation.
     #[doc(hidden)]
     fn heat(
@@ -335,6 +343,15 @@ macro_rules! compiled {
     ($($scalar:ident),*) => {
         $(
             impl Compiled for $scalar {
+                fn navier_stokes(fields: &Fields<Self>) -> Stages {
+                    match (fields.dims(), fields.order) {
+                        (2, StaggeredOrder::Second) => fields.stages::<2, 1>(),
+                        (2, StaggeredOrder::Fourth) => fields.stages::<2, 2>(),
+                        (_, StaggeredOrder::Second) => fields.stages::<3, 1>(),
+                        (_, StaggeredOrder::Fourth) => fields.stages::<3, 2>(),
+                    }
+                }
+
                 fn heat(
                     builder: &Builder<'_, Self, 1, 0>,
                     diffusivity: f64,

@@ -84,6 +84,41 @@ pub(crate) fn decay_extent(integrator: Integrator) -> f64 {
     largest_factor(integrator, |angle| Complex64::from(-angle / PI))
 }
 
+/// The longest stable time step, s, of advection and diffusion by central differences together: along each axis waves
+/// oscillate at rates up to `turns` and decay at rates up to `decays`, 1/s, the first as the sine of an angle and the
+/// second as the square of that of half of it. In the plane of complex rates that is an ellipse an axis, and what all
+/// axes together come to lies in the sum of the ellipses, whose rim must be stable.
+pub(crate) fn advection_diffusion_limit(
+    integrator: Integrator,
+    turns: [f64; 3],
+    decays: [f64; 3],
+) -> f64 {
+    const RIM: usize = 180;
+    let rim: Vec<Complex64> = (0..=RIM)
+        .map(|k| {
+            // Directions lie closer about that of the origin, which the rim only touches.
+            let closer = 0.5 * (1.0 - (PI * k as f64 / RIM as f64).cos());
+            let (ny, nx) = (PI * closer).sin_cos();
+            let points = turns.iter().zip(&decays).map(|(&turn, &decay)| {
+                let (x, y) = (0.25 * decay * decay * nx, turn * turn * ny);
+                let length = (x * nx + y * ny).sqrt().max(f64::MIN_POSITIVE);
+                Complex64::new(x / length - 0.5 * decay, y / length)
+            });
+            points.sum()
+        })
+        .collect();
+    let largest = rim.iter().map(|rate| rate.norm()).fold(f64::MIN_POSITIVE, f64::max);
+    // No integrator here takes more than 4 of either.
+    let (mut stable, mut limit) = (0.0, 4.0 / largest);
+    for _ in 0..24 {
+        let middle = 0.5 * (stable + limit);
+        let is_stable =
+            rim.iter().all(|&rate| amplification(integrator, rate * middle) <= 1.0 + 1e-10);
+        *if is_stable { &mut stable } else { &mut limit } = middle;
+    }
+    stable
+}
+
 /// The largest Courant number, `|v| dt / h` summed over the axes, with which advection is stable: of
 /// WENO schemes that of the linear one of their order.
 pub(crate) fn advection_limit(face: Face, integrator: Integrator) -> Result<f64, FdError> {
@@ -274,6 +309,19 @@ mod tests {
         for face in [Face::Upwind3, Face::Weno5] {
             assert!(advection_limit(face, Integrator::Euler).is_err(), "{}", face.name());
         }
+    }
+
+    /// Without flow the limit of diffusion; almost without viscosity that of RK4 for oscillations, 2 sqrt(2); and by
+    /// Euler's method `2 nu / u^2` if that is less (Hindmarsh, Gresho & Griffiths 1984, Int. J. Numer. Methods Fluids 4).
+    #[test]
+    fn advection_and_diffusion_are_stable_up_to_what_is_known() {
+        let limit = advection_diffusion_limit;
+        let still = limit(Integrator::Rk4, [0.0; 3], [3.0, 5.0, 0.0]);
+        close(still, 2.7853 / 8.0, 1e-4);
+        close(limit(Integrator::Rk4, [3.0, 0.0, 5.0], [1e-9; 3]), 8f64.sqrt() / 8.0, 1e-3);
+        // u = 1, h = 0.1, nu = 0.01: turns u / h, decays 4 nu / h^2.
+        close(limit(Integrator::Euler, [10.0, 0.0, 0.0], [4.0, 0.0, 0.0]), 0.02, 1e-3);
+        close(limit(Integrator::Euler, [10.0, 0.0, 0.0], [40.0, 0.0, 0.0]), 0.05, 1e-3);
     }
 
     /// The largest eigenvalue is that of the shortest wave: 4, 16/3, 272/45 and 2048/315 over `h^2` and

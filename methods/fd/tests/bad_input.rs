@@ -2,7 +2,7 @@
 
 use finegrain_fd::{
     Advection, Boundary, Burgers, Condition, Drift, Face, FdError, Gas, GasEnd, GasState, Heat,
-    Mesh, Order, Side, Wave,
+    Mesh, NavierStokes, Order, Side, StaggeredOrder, Wave,
 };
 use finegrain_framework::Integrator;
 
@@ -119,4 +119,42 @@ fn a_gas_that_is_none() {
     assert!(text.contains("initial pressure at [0.025") && text.contains("above zero"), "{text}");
     let space = Mesh::new([Side::cells(9, 0.0, 1.0); 3]);
     assert!(of(gas, air, &space).contains("directions of a gas is 3"));
+}
+
+#[test]
+fn a_flow_that_is_none() {
+    let flow = NavierStokes {
+        viscosity: 0.1,
+        acceleration: [0.0; 3],
+        wall_velocity: [[[0.0; 3]; 2]; 3],
+        order: StaggeredOrder::Second,
+        integrator: Integrator::Rk4,
+        courant: 0.8,
+    };
+    let of = |flow: NavierStokes, mesh: &Mesh| said(flow.model::<f64>(mesh, &|_| [0.0; 3]));
+    let cavity = Mesh::new([Side::cells(16, 0.0, 1.0); 2]);
+    assert!(
+        of(NavierStokes { viscosity: 0.0, ..flow.clone() }, &cavity).contains("viscosity is 0")
+    );
+    let text = of(NavierStokes { courant: 1.2, ..flow.clone() }, &cavity);
+    assert!(text.contains("courant is 1.2") && text.contains("at most 1"), "{text}");
+    let acceleration = [0.0, f64::NAN, 0.0];
+    let text = of(NavierStokes { acceleration, ..flow.clone() }, &cavity);
+    assert!(text.contains("acceleration is NaN"), "{text}");
+    let text = of(NavierStokes { order: StaggeredOrder::Fourth, ..flow.clone() }, &cavity);
+    assert!(text.contains("order 4") && text.contains("walls along x"), "{text}");
+    let mut leaking = flow.clone();
+    leaking.wall_velocity[1][0] = [1.0, 0.5, 0.0];
+    let text = of(leaking, &cavity);
+    assert!(text.contains("lower end of y") && text.contains("along the wall"), "{text}");
+    let text = of(NavierStokes { integrator: Integrator::Leapfrog, ..flow.clone() }, &cavity);
+    assert!(text.contains("leapfrog") && text.contains("not stable"), "{text}");
+    let few = Mesh::new([Side::cells(16, 0.0, 1.0), Side::periodic(3, 0.0, 1.0)]);
+    assert!(of(flow.clone(), &few).contains("3 points along y; there must be at least 4"));
+    let ends = Mesh::new([Side::ends(16, 0.0, 1.0); 2]);
+    assert!(of(flow.clone(), &ends).contains("middle of cells"));
+    let line = Mesh::new([Side::cells(16, 0.0, 1.0)]);
+    assert!(of(flow.clone(), &line).contains("directions of a flow is 1"));
+    let text = said(flow.model::<f64>(&cavity, &|x| [0.0, 1.0 / (x[1] - 0.5), 0.0]));
+    assert!(text.contains("initial velocity_y at [0.03125, 0.5, 0.0]"), "{text}");
 }

@@ -3,7 +3,7 @@
 
 use finegrain_fd::{
     Advection, Boundary, Compiled, Condition, Data, Face, Fd, Gas, GasEnd, GasState, Heat, Mesh,
-    Order, Side, Wave,
+    NavierStokes, Order, Side, StaggeredOrder, Wave,
 };
 use finegrain_framework::{HandOut, Integrator, Schedule, Settings, Simulation};
 
@@ -56,6 +56,28 @@ fn gas<T: Compiled>() -> Fd<T> {
     gas.model(&mesh, &state).unwrap()
 }
 
+/// Flow along a duct with a moving wall, and in a periodic box.
+fn flow<T: Compiled>(order: StaggeredOrder, integrator: Integrator) -> Fd<T> {
+    let mut wall_velocity = [[[0.0; 3]; 2]; 3];
+    wall_velocity[1][1] = [1.0, 0.0, 0.5];
+    let acceleration = [0.1, 0.0, 0.0];
+    let flow = NavierStokes {
+        viscosity: 0.01,
+        acceleration,
+        wall_velocity,
+        order,
+        integrator,
+        courant: 0.9,
+    };
+    let closed = match order {
+        StaggeredOrder::Second => Side::cells,
+        StaggeredOrder::Fourth => Side::periodic,
+    };
+    let mesh =
+        Mesh::new([Side::periodic(37, 0.0, 1.0), closed(22, 0.0, 0.7), closed(19, 0.0, 0.5)]);
+    flow.model(&mesh, &|x| [start(x), start([x[1], x[2], x[0]]), x[0].sin()]).unwrap()
+}
+
 fn same_bits<T: Compiled>(model: impl Fn() -> Fd<T>) {
     let hash = |settings: Settings| {
         let mut simulation = Simulation::new(model().model, settings).unwrap();
@@ -92,6 +114,9 @@ fn of_what_flows() {
     same_bits(advection::<f64>);
     same_bits(gas::<f64>);
     same_bits(gas::<f32>);
+    same_bits(|| flow::<f64>(StaggeredOrder::Second, Integrator::Rk4));
+    same_bits(|| flow::<f64>(StaggeredOrder::Fourth, Integrator::SspRk3));
+    same_bits(|| flow::<f32>(StaggeredOrder::Second, Integrator::Rk2));
 }
 
 /// From a checkpoint written in the middle, with fields in either set of columns.
@@ -120,4 +145,5 @@ fn after_a_restart() {
     restarts(|| wave::<f64>(Order::Sixth));
     restarts(advection::<f64>);
     restarts(gas::<f64>);
+    restarts(|| flow::<f64>(StaggeredOrder::Second, Integrator::SspRk3));
 }

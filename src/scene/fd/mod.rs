@@ -15,10 +15,7 @@ macro_rules! prepare_with {
             Ok(match precision {
                 Precision::F32 => Box::new($build::<f32>(parameters, precision)?),
                 Precision::F64 => Box::new($build::<f64>(parameters, precision)?),
-                Precision::Mixed => {
-                    let (method, known) = ("fd", "f32 and f64");
-                    return Err($crate::scene::SceneError::Precision { method, precision, known });
-                }
+                Precision::Mixed => return Err($crate::scene::fd::refused(precision)),
             })
         }
     };
@@ -26,13 +23,18 @@ macro_rules! prepare_with {
 
 pub mod advection;
 pub mod burgers;
+pub mod cavity;
+pub mod channel;
+pub mod double_shear_layer;
 pub mod heat;
 pub mod sod;
+pub mod taylor_green;
 pub mod toro;
 pub mod wave;
 pub mod zalesak;
 
 mod gas;
+mod incompressible;
 
 use finegrain_fd::{Boundary, Compiled, Condition, Face, Fd, Mesh, Order, Parts, Side};
 use finegrain_framework::run::{Dump, Run, Summary};
@@ -44,6 +46,11 @@ use super::parameter::{Parameter, Parameters};
 use super::report::Picture;
 use super::{Orders, Precision, Prepared, Report, SceneError};
 use crate::figure::{Axis, Chart, Field};
+
+/// The error for numbers that the method does not compute with.
+fn refused(precision: Precision) -> SceneError {
+    SceneError::Precision { method: "fd", precision, known: "f32 and f64" }
+}
 
 /// Of the Laplacian.
 const ORDER: Parameter =
@@ -114,6 +121,11 @@ trait Flow<T: Compiled> {
     /// Adds monitors and stop criteria.
     fn observe(&self, run: Run<Grid>, parts: &Parts<T>) -> Run<Grid>;
 
+    /// Adds what is to be seen of unknowns of these names.
+    fn show(&self, dump: Dump, unknowns: &[String]) -> Dump {
+        unknowns.iter().fold(dump, |dump, name| dump.scalar(name))
+    }
+
     /// Draws results from the histories and the final state.
     fn judge(
         &self,
@@ -149,9 +161,8 @@ impl<T: Compiled, F: Flow<T>> Prepared for FdScene<T, F> {
             .collect();
         let (simulation, trace) = (orders.simulation(model)?, orders.trace.clone());
         let run = flow.observe(Run::new(simulation).scene(description), &parts);
-        let mut run = orders.plan(run, flow.end_time(), |every| {
-            names.iter().fold(Dump::new("fields", every), |dump, name| dump.scalar(name))
-        });
+        let mut run = orders
+            .plan(run, flow.end_time(), |every| flow.show(Dump::new("fields", every), &names));
         let summary = run.run()?;
         let mut report = Report::new(&summary, parts.mesh.points());
         let simulation = run.simulation_mut();

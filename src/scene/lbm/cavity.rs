@@ -69,22 +69,16 @@ impl<T: Compiled> Flow<T> for CavityFlow {
         50.0 + self.scene.reynolds
     }
 
-    /// Steady when the kinetic energy changes by less than a part in 10^5 in a time unit: disturbances
-    /// decay at least as fast as `exp(-2 pi^2 t / Re)`, so it is then within some parts in 10^5 of its
-    /// final value at Re = 100.
     fn observe(&self, run: Run<Grid>, parts: &Parts<T>) -> Run<Grid> {
         let parts = parts.clone();
         let columns = ["kinetic_energy", "largest_speed", "excess_mass"];
+        let scene = self.scene;
         run.monitor("flow", Every::Time(1.0), columns, move |whole| {
             let totals = measure::totals(whole, &parts);
             let speed = measure::largest_speed(whole, &parts);
             [totals.kinetic_energy, speed, totals.excess_mass]
         })
-        .stop_when(Every::Time(1.0), |_, histories| {
-            let energy: Vec<f64> =
-                histories[0].column("kinetic_energy").map(Iterator::collect).unwrap_or_default();
-            matches!(energy[..], [.., before, now] if (now - before).abs() < 1e-5 * now)
-        })
+        .stop_when(Every::Time(1.0), move |_, histories| scene.is_steady(histories, 5e-5))
     }
 
     /// Extrema of the velocity on the lines through the middle.

@@ -42,7 +42,7 @@ use finegrain_lbm::{
 
 use super::parameter::{Parameter, Parameters};
 use super::report::Picture;
-use super::{Orders, Precision, Prepared, Report, SceneError};
+use super::{Orders, Precision, Prepared, Report, SceneError, cubic};
 use crate::figure::{Axis, Field};
 
 /// The error for numbers that the method does not compute with.
@@ -184,7 +184,7 @@ impl<T: Compiled> Final<T> {
         let first = self.position([0; 3]);
         let place = [0, 1].map(|a| (point[a] - first[a]) / self.mesh.spacing);
         let lowest = place.map(|p| p.floor() as isize - 1);
-        let [along_x, along_y] = place.map(|p| cubic(p - p.floor()));
+        let [along_x, along_y] = place.map(|p| cubic::weights(p - p.floor()));
         let mut velocity = [0.0; 2];
         for (dy, wy) in (0..).zip(along_y) {
             for (dx, wx) in (0..).zip(along_x) {
@@ -210,16 +210,6 @@ impl<T: Compiled> Final<T> {
         let [nx, ny, nz] = self.mesh.shape;
         (0..nx * ny * nz).map(move |i| [i % nx, i / nx % ny, i / (nx * ny)])
     }
-}
-
-/// Lagrange's weights of sites at -1, 0, 1, 2 for a place between 0 and 1.
-fn cubic(x: f64) -> [f64; 4] {
-    [
-        -x * (x - 1.0) * (x - 2.0) / 6.0,
-        (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0,
-        -(x + 1.0) * x * (x - 2.0) / 2.0,
-        (x + 1.0) * x * (x - 1.0) / 6.0,
-    ]
 }
 
 /// A scene with its model.

@@ -86,7 +86,7 @@ impl Wave {
 /// density: `|(u_n - u_{n-1}) / dt|^2 / 2 - c^2 (u_{n-1}, laplace u_n) / 2`. It is that of the time
 /// `t_n - dt / 2`. The derived fields must be up to date.
 pub fn energy<T: Compiled>(whole: &mut Whole<'_, Grid>, parts: &Parts<T>, time_step: f64) -> f64 {
-    let Some(acceleration) = parts.acceleration else { return 0.0 };
+    let [acceleration] = parts.derived[..] else { return 0.0 };
     let [energy] = whole.sum(|near| {
         let u = near.rows(parts.unknowns[0]);
         let (before, a) = (near.rate_rows(parts.rates[0]), near.rate_rows(acceleration));

@@ -1,0 +1,148 @@
+//! The stages of a step: which terms are evaluated in which order, from which columns.
+
+use finegrain_framework::space::Grid;
+use finegrain_framework::{Fault, Moment, Own, Rate, Real, Stage, State, UpdateStage};
+
+use super::NavierStokes;
+use super::around::Coefficients;
+use super::equation::{Divergence, InTheMiddle, Momentum, PressureGradient};
+use super::stencil::{Field, Source, Stencil};
+use crate::mesh::{Mesh, Side, Spread};
+use crate::model::Compiled;
+use crate::operator::staggered::{self, StaggeredOrder};
+use crate::operator::value;
+use crate::poisson::axis::Axis;
+use crate::poisson::{Poisson, Solver};
+
+/// The stages of a model.
+pub struct Stages {
+    /// From the velocity, its rate of change.
+    pub(super) evaluation: Vec<Stage<Grid>>,
+    /// Takes what has a divergence from the velocity at the beginning.
+    pub(super) start: Vec<Stage<Grid>>,
+    /// Fields for those who look.
+    pub(super) looking: Vec<Stage<Grid>>,
+}
+
+/// All that stages are made from.
+pub struct Fields<T: Real> {
+    pub(super) equation: NavierStokes,
+    pub(super) mesh: Mesh,
+    pub(crate) order: StaggeredOrder,
+    pub(super) velocity: Vec<State<T>>,
+    pub(super) rates: Vec<Rate<T>>,
+    pub(super) pressure: Rate<T>,
+    pub(super) middle: Vec<Rate<T>>,
+}
+
+impl<T: Compiled> Fields<T> {
+    pub(crate) fn dims(&self) -> usize {
+        self.mesh.dims()
+    }
+
+    /// In `D` directions with operators of order `2 K`.
+    pub(crate) fn stages<const D: usize, const K: usize>(&self) -> Stages {
+        let coefficients = Coefficients::<T, D, K>::new(self.mesh.spacing());
+        let equation = &self.equation;
+        let faces = |source: fn(&Self, usize) -> Source<T>| -> [Field<T>; D] {
+            std::array::from_fn(|a| {
+                let beyond = equation.beyond(&self.mesh, Some(a));
+                Field { source: source(self, a), beyond }
+            })
+        };
+        let velocity = faces(|all, a| Source::State(all.velocity[a]));
+        let has_walls = |a: usize| self.mesh.sides()[a].spread == Spread::Cells;
+        let momentum = Stage::rate(Stencil {
+            term: Momentum {
+                viscosity: T::of(equation.viscosity),
+                acceleration: equation.acceleration.map(T::of),
+            },
+            fields: velocity,
+            out: self.rates.clone(),
+            adds: false,
+            wall: (0..D).map(|a| has_walls(a).then_some(a)).collect(),
+            coefficients: coefficients.clone(),
+        });
+        let divergence = |fields| {
+            Stage::rate(Stencil {
+                term: Divergence,
+                fields,
+                out: vec![self.pressure],
+                adds: false,
+                wall: vec![None],
+                coefficients: coefficients.clone(),
+            })
+        };
+        let of_rates = faces(|all, a| Source::Rate(all.rates[a]));
+        let of_next = faces(|all, a| Source::Both(all.rates[a], all.velocity[a]));
+        let gradient = |adds| {
+            Stage::rate(Stencil {
+                term: PressureGradient,
+                fields: [Field {
+                    source: Source::Rate(self.pressure),
+                    beyond: equation.beyond(&self.mesh, None),
+                }],
+                out: self.rates.clone(),
+                adds,
+                wall: vec![None; D],
+                coefficients: coefficients.clone(),
+            })
+        };
+        let solve = Stage::whole(Poisson { solver: self.solver(), column: self.pressure });
+        let correction = Correction { velocity: self.velocity.clone(), rates: self.rates.clone() };
+        let middle = Stage::rate(Stencil {
+            term: InTheMiddle,
+            fields: velocity,
+            out: self.middle.clone(),
+            adds: false,
+            wall: vec![None; D + 1],
+            coefficients: coefficients.clone(),
+        });
+        Stages {
+            start: vec![
+                divergence(velocity),
+                solve.clone(),
+                gradient(false),
+                Stage::update(correction),
+            ],
+            looking: vec![momentum.clone(), divergence(of_rates), solve.clone(), middle],
+            evaluation: vec![momentum, divergence(of_next), solve, gradient(true)],
+        }
+    }
+
+    /// Of `divergence(gradient(p)) = q`.
+    fn solver(&self) -> Solver<T> {
+        let weights: Vec<f64> = staggered::derivative(self.order).into_iter().map(value).collect();
+        let spacing = self.mesh.spacing();
+        let axis = |side: &Side| Axis::new(side.points, side.spread == Spread::Periodic);
+        Solver::new(self.mesh.sides().iter().map(axis).collect(), |a, angle| {
+            let terms = weights.iter().zip([0.5, 1.5]);
+            let derivative: f64 = terms.map(|(d, by)| 2.0 * d * (by * angle).sin()).sum();
+            (derivative / spacing[a]).powi(2)
+        })
+    }
+}
+
+/// Adds rates to the velocity as they are.
+struct Correction<T> {
+    velocity: Vec<State<T>>,
+    rates: Vec<Rate<T>>,
+}
+
+impl<T: Real> UpdateStage<Grid> for Correction<T> {
+    type Scratch = ();
+
+    fn name(&self) -> &str {
+        "correction of the start"
+    }
+
+    fn update(&self, own: &mut Own<'_, Grid>, _: &mut (), _: &Moment) -> Result<(), Fault> {
+        for (&u, &rate) in self.velocity.iter().zip(&self.rates) {
+            let (mut u, rate) = (own.state_mut(u), own.rate(rate));
+            for k in 0..u.spans() {
+                u.span(k).iter_mut().zip(rate.span(k)).for_each(|(u, &rate)| *u += rate);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,172 @@
+//! What scenes of incompressible flow share: histories, dumps, divergence and momentum, and the picture.
+
+use finegrain_fd::{Compiled, NavierStokes, Parts, Spread, StaggeredOrder, measure};
+use finegrain_framework::run::{Dump, Every, Run, Summary};
+use finegrain_framework::space::Grid;
+use finegrain_framework::{Rate, Simulation, Whole};
+
+use super::Flow;
+use crate::figure::{Axis, Field};
+use crate::scene::Report;
+use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::report::Picture;
+
+/// Of operators in periodic boxes.
+pub const ORDER: Parameter = Parameter::choice(
+    "order",
+    &["4", "2"],
+    "of the operators: Morinishi et al. (1998), Harlow & Welch (1965)",
+);
+
+/// A fluid without forces between walls at rest, if there are any, for the parameters of time steps and, in periodic
+/// boxes, [`ORDER`].
+pub fn equation(parameters: &Parameters, viscosity: f64, order: StaggeredOrder) -> NavierStokes {
+    NavierStokes {
+        viscosity,
+        acceleration: [0.0; 3],
+        wall_velocity: [[[0.0; 3]; 2]; 3],
+        order,
+        integrator: super::integrator(parameters),
+        courant: parameters.number("courant"),
+    }
+}
+
+/// What [`ORDER`] says.
+pub fn order(parameters: &Parameters) -> StaggeredOrder {
+    match parameters.choice("order") {
+        "2" => StaggeredOrder::Second,
+        _ => StaggeredOrder::Fourth,
+    }
+}
+
+/// A scene of incompressible flow.
+pub trait Scene {
+    /// When it ends if nobody says otherwise, s.
+    fn end_time(&self) -> f64;
+
+    /// Time between samples of the history, s.
+    fn sampling(&self) -> f64;
+
+    /// Adds stop criteria; the first history has `kinetic_energy`.
+    fn stop(&self, run: Run<Grid>) -> Run<Grid> {
+        run
+    }
+
+    /// Draws results from the histories and the final state, whose derived fields are up to date.
+    fn judge<T: Compiled>(
+        &self,
+        report: &mut Report,
+        summary: &Summary,
+        simulation: &mut Simulation<Grid>,
+        parts: &Parts<T>,
+    );
+
+    /// Title of the picture of the final field.
+    fn title(&self) -> String;
+}
+
+/// The flow of a scene.
+pub struct Incompressible<S>(pub S);
+
+impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
+    fn end_time(&self) -> f64 {
+        self.0.end_time()
+    }
+
+    fn observe(&self, run: Run<Grid>, parts: &Parts<T>) -> Run<Grid> {
+        let parts = parts.clone();
+        let columns = [
+            "kinetic_energy",
+            "largest_speed",
+            "momentum_x",
+            "momentum_y",
+            "momentum_z",
+            "divergence",
+        ];
+        let run = run.monitor("flow", Every::Time(self.0.sampling()), columns, move |whole| {
+            let [x, y, z] = momentum(whole, &parts);
+            let [energy, speed] = energy_and_speed(whole, &parts);
+            [energy, speed, x, y, z, measure::largest(whole, divergence(&parts))]
+        });
+        self.0.stop(run)
+    }
+
+    fn show(&self, dump: Dump, unknowns: &[String]) -> Dump {
+        let [pressure, velocity @ .., _] = NavierStokes::DERIVED;
+        dump.scalar(pressure).vector("velocity", velocity.into_iter().take(unknowns.len()))
+    }
+
+    /// `divergence`: the largest, times the spacing over the largest speed; in a periodic box
+    /// `momentum_change`: the largest of its components' since the beginning, over the largest speed.
+    fn judge(
+        &self,
+        report: &mut Report,
+        summary: &Summary,
+        simulation: &mut Simulation<Grid>,
+        parts: &Parts<T>,
+    ) {
+        let mut whole = simulation.whole();
+        let [_, speed] = energy_and_speed(&mut whole, parts);
+        let spacing = parts.mesh.spacing().into_iter().take(parts.mesh.dims()).fold(0.0, f64::max);
+        let largest = measure::largest(&mut whole, divergence(parts));
+        if speed > 0.0 {
+            report.result("divergence", largest * spacing / speed, None);
+        }
+        let is_periodic = parts.mesh.sides().iter().all(|side| side.spread == Spread::Periodic);
+        if is_periodic && speed > 0.0 {
+            let names = ["momentum_x", "momentum_y", "momentum_z"];
+            let before = names.map(|name| summary.histories[0].column(name)?.next());
+            let pairs = momentum(&mut whole, parts).into_iter().zip(before);
+            let change = pairs.map(|(now, before)| (now - before.unwrap_or(now)).abs());
+            report.result("momentum_change", change.fold(0.0, f64::max) / speed, None);
+        }
+        self.0.judge(report, summary, simulation, parts);
+    }
+
+    /// The speed, in space in a slice through the middle.
+    fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
+        let ([nx, ny, nz], [dx, dy, _]) = (parts.mesh.shape(), parts.mesh.spacing());
+        let [x, y, _] = parts.mesh.position([0; 3]);
+        let slice = velocities(simulation, parts).skip(nz / 2 * nx * ny).take(nx * ny);
+        Field::of_grid([nx, ny], [x, y], [dx, dy], slice.map(|(_, [u, v, w])| u.hypot(v).hypot(w)))
+            .title(self.0.title())
+            .quantity(Axis::new("speed").unit("m/s"))
+            .into()
+    }
+}
+
+/// Positions, m, and velocities, m/s, in the middle of cells.
+pub fn velocities<'a, T: Compiled>(
+    simulation: &'a Simulation<Grid>,
+    parts: &'a Parts<T>,
+) -> impl Iterator<Item = ([f64; 3], [f64; 3])> + 'a {
+    let components = parts.derived[1..][..parts.mesh.dims()].iter();
+    let columns: Vec<_> = components.map(|&u| simulation.columns().values(u)).collect();
+    parts.mesh.positions().enumerate().map(move |(i, position)| {
+        (position, [0, 1, 2].map(|a| columns.get(a).map_or(0.0, |column| column[i].as_f64())))
+    })
+}
+
+fn divergence<T: Compiled>(parts: &Parts<T>) -> Rate<T> {
+    parts.derived[1 + parts.mesh.dims()]
+}
+
+/// Integrals of the velocity.
+fn momentum<T: Compiled>(whole: &mut Whole<'_, Grid>, parts: &Parts<T>) -> [f64; 3] {
+    let mut momentum = [0.0; 3];
+    for (total, &u) in momentum.iter_mut().zip(&parts.unknowns) {
+        *total = measure::totals(whole, parts, u).integral;
+    }
+    momentum
+}
+
+/// The kinetic energy over the density, and the largest component of the velocity.
+pub fn energy_and_speed<T: Compiled>(whole: &mut Whole<'_, Grid>, parts: &Parts<T>) -> [f64; 2] {
+    let (mut energy, mut speed) = (0.0, 0.0f64);
+    for &u in &parts.unknowns {
+        let totals = measure::totals(whole, parts, u);
+        energy += 0.5 * totals.square;
+        speed = speed.max(totals.most).max(-totals.least);
+    }
+    [energy, speed]
+}
