@@ -10,6 +10,7 @@ use std::sync::{Mutex, PoisonError, TryLockError};
 use crate::clock::Clock;
 use crate::columns::{ColumnId, Columns, Role};
 use crate::domain::{Domain, Partition};
+use crate::pack::Fence;
 use crate::stage::Fault;
 use crate::step::{Entry, Step, Stretch};
 use crate::trace::{Event, Trace};
@@ -151,6 +152,7 @@ pub(crate) struct Leg<'a, D: Domain> {
     clock: &'a Clock,
     stint: Stint,
     watch: Watch<'a>,
+    past_caches: bool,
     failed: AtomicBool,
     failure: Mutex<Option<Failure>>,
 }
@@ -186,9 +188,16 @@ impl<'a, D: Domain> Leg<'a, D> {
             clock,
             stint,
             watch,
+            past_caches: false,
             failed: AtomicBool::new(false),
             failure: Mutex::new(None),
         }
+    }
+
+    /// Lets rate stages write past the caches, or not.
+    pub fn past_caches(mut self, pays: bool) -> Self {
+        self.past_caches = pays;
+        self
     }
 
     /// Ends the leg after the schedule has run it: the columns' memory is brought in the order
@@ -267,11 +276,12 @@ impl<'a, D: Domain> Leg<'a, D> {
         let stage = &self.step.stages[stage];
         if stage.is_rate() {
             let writes = stage.writes();
+            let fence = Fence::new(self.past_caches);
             // SAFETY: the schedule runs this part of this sub-domain once, on this worker, and
             // whatever runs beside it within sight is the same part (module `view`); the leg's
             // exclusive borrow of the columns keeps their memory in place.
             let (near, mut rates) =
-                unsafe { (Near::new(place, writes), Rates::new(place, writes)) };
+                unsafe { (Near::new(place, writes), Rates::new(place, writes, fence.bypass())) };
             self.domain.check(&near)?;
             stage.run_rate(&near, &mut rates, scratch, &moment)
         } else {

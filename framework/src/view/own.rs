@@ -4,6 +4,7 @@
 use super::{Part, PartMut, Place};
 use crate::columns::{ColumnId, ColumnSet, Element, ElementKind, Handle, Rate, State};
 use crate::domain::{Domain, Span};
+use crate::pack::Bypass;
 
 /// Which columns of one sub-domain have been borrowed, and how.
 #[derive(Debug, Default, PartialEq)]
@@ -32,14 +33,25 @@ pub struct Rates<'a, D: Domain> {
     place: Place<'a, D>,
     writes: ColumnSet,
     borrows: Borrows,
+    bypass: Option<Bypass<'a>>,
 }
 
 impl<'a, D: Domain> Rates<'a, D> {
     /// # Safety
     /// As [`Near::new`] for the partition and slots. As long as `'a` lasts, nobody else touches
     /// the columns in `writes` in the sub-domain's spans.
-    pub(crate) unsafe fn new(place: Place<'a, D>, writes: ColumnSet) -> Self {
-        Self { place, writes, borrows: Borrows::default() }
+    pub(crate) unsafe fn new(
+        place: Place<'a, D>,
+        writes: ColumnSet,
+        bypass: Option<Bypass<'a>>,
+    ) -> Self {
+        Self { place, writes, borrows: Borrows::default(), bypass }
+    }
+
+    /// Leave to write past the caches; `None` unless all columns are far larger than these and
+    /// the whole domain is stepped before anybody comes back to what is written here.
+    pub fn bypass(&self) -> Option<Bypass<'a>> {
+        self.bypass
     }
 
     /// The sub-domain's part of a rate column; each column can be had once per call.
