@@ -52,12 +52,6 @@ impl<'a, 'v, T: Real> Around<'a, 'v, T> {
         self.row(q, [-y, -z]).or_else(|| self.row(q, [0, 0])).unwrap_or_default()
     }
 
-    /// Velocity number `q`.
-    #[inline(always)]
-    pub fn velocity(&self, q: usize) -> [i32; 3] {
-        self.velocities[q]
-    }
-
     /// Population `q` a step `to` away from site `x`.
     pub fn at(&self, q: usize, x: usize, to: [i32; 3]) -> T {
         let row = self.row(q, [to[1], to[2]]).unwrap_or_default();
@@ -80,8 +74,15 @@ impl<'a, 'v, T: Real> Around<'a, 'v, T> {
     }
 }
 
-/// Place in a row of `n` sites, around its ends.
+/// Place in a row of `n` sites, at most one beyond its ends.
 #[inline(always)]
 pub(crate) fn wrap(x: i32, n: usize) -> usize {
-    x.rem_euclid(n as i32) as usize
+    let n = n as i32;
+    (if x < 0 {
+        x + n
+    } else if x >= n {
+        x - n
+    } else {
+        x
+    }) as usize
 }

@@ -66,58 +66,6 @@ pub(crate) fn equilibrium<L: Lattice<Q>, V: Pack, const Q: usize>(
     coefficients
 }
 
-/// What moments of second order that are seen from a frame moving with `u` give to a moment of higher
-/// order seen from rest: over all pairs of its indices, that of the pair times the velocities of the
-/// others (Malaspinas 2015, eq. 14, summed up).
-#[inline(always)]
-pub(crate) fn carried<L: Lattice<Q>, V: Pack, const Q: usize>(
-    second: &[[V; 3]; 3],
-    u: &[V; 3],
-    code: usize,
-) -> V {
-    let powers = powers(code);
-    let mut sum = None;
-    for a in 0..L::DIMS {
-        for b in a..L::DIMS {
-            let pairs = if a == b {
-                powers[a] * powers[a].saturating_sub(1) / 2
-            } else {
-                powers[a] * powers[b]
-            };
-            if pairs > 0 {
-                let mut others = powers;
-                others[a] -= 1;
-                others[b] -= 1;
-                let part = second[a][b] * product(u, others) * V::Scalar::of(pairs as f64);
-                sum = Some(sum.map_or(part, |sum| sum + part));
-            }
-        }
-    }
-    sum.unwrap_or(u[0].splat_like(V::Scalar::zero()))
-}
-
-/// The populations with this density, velocity and stress beyond equilibrium, and with coefficients of
-/// higher order that follow from these (Malaspinas 2015, eqs. 12 to 15).
-#[inline(always)]
-pub(crate) fn regularised<L: Lattice<Q>, V: Pack, const Q: usize>(
-    excess: V,
-    u: &[V; 3],
-    stress: &[[V; 3]; 3],
-) -> [V; Q] {
-    let mut coefficients = equilibrium::<L, V, Q>(excess, u);
-    for code in 0..count(L::DIMS) {
-        if order(code) >= 2 {
-            coefficients[code] = coefficients[code] + carried::<L, V, Q>(stress, u, code);
-        }
-    }
-    for code in 0..count(L::DIMS) {
-        if !exists::<Q>(code) {
-            coefficients[code] = coefficients[code].splat_like(V::Scalar::zero());
-        }
-    }
-    populations::<L, V, Q>(moments::<L, V, Q>(coefficients))
-}
-
 /// Moments of Hermite coefficients.
 #[inline(always)]
 pub(crate) fn moments<L: Lattice<Q>, V: Pack, const Q: usize>(

@@ -9,11 +9,12 @@
 //! |---|---|
 //! | [`lattice`] | velocities and weights |
 //! | [`mesh`] | sites and time step: the conversion of units |
-//! | `flow.rs` | density, velocity and equilibrium of a site |
-//! | `hermite.rs` | moments of populations, and populations of moments |
+//! | `flow.rs` | density, velocity and stress of a site |
+//! | `hermite.rs`, `frame.rs` | moments of populations, and populations of moments |
 //! | `relaxation.rs` | how fast the stress relaxes, eddies included |
 //! | `collision/` | one collision each, reading like its paper |
-//! | `stream.rs`, `around.rs` | the step: pull, collide, write, for packs of sites |
+//! | `stream.rs`, `around.rs` | the step: pull, collide, write |
+//! | `kernel.rs` | the collision of packs of sites |
 //! | `sites.rs`, `link.rs` | what bodies do to rows of sites, and to populations |
 //! | [`opening`] | velocity inlets, pressure and non-reflecting outlets |
 //! | [`start`] | consistent populations at the beginning |
@@ -68,7 +69,9 @@ mod acceleration;
 mod around;
 mod derived;
 mod flow;
+mod frame;
 mod hermite;
+mod kernel;
 mod link;
 mod relaxation;
 mod sites;

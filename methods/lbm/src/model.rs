@@ -7,10 +7,11 @@ use finegrain_framework::space::Grid;
 use finegrain_framework::{Columns, Model, Plan, Real, RigidPace, Step};
 
 use crate::acceleration::Acceleration;
-use crate::collision::{Bgk, Central, Collide, Collision, Cumulant, Mrt, Regularised, Trt};
+use crate::collision::{Central, Collide, Collision, Cumulant, Mrt, Regularised, Trt};
 use crate::derived::Derived;
 use crate::error::LbmError;
 use crate::fields::Fields;
+use crate::kernel::Kernel;
 use crate::lattice::{D2Q9, D3Q19, D3Q27, Lattice, LatticeKind};
 use crate::mesh::Mesh;
 use crate::opening::Openings;
@@ -122,8 +123,8 @@ impl<T: Real> Lbm<T> {
     ) -> Result<Self, LbmError> {
         let builder = Builder { mesh, fluid, physics, scheme, start };
         match scheme.collision {
-            Collision::Bgk => builder.build(lattice, Bgk),
-            Collision::Trt { magic } => builder.build(lattice, Trt { magic }),
+            Collision::Bgk => builder.build(lattice, Trt { magic: None }),
+            Collision::Trt { magic } => builder.build(lattice, Trt { magic: Some(magic) }),
             Collision::Mrt { magic } => builder.build(lattice, Mrt { magic }),
             Collision::CentralMoments => builder.build(lattice, Central),
             Collision::Cumulant => builder.build(lattice, Cumulant),
@@ -198,9 +199,7 @@ impl Builder<'_> {
             now: std::array::from_fn(|q| fields.populations[q]),
             next: std::array::from_fn(|q| fields.next[q]),
             lattice: PhantomData,
-            collision,
-            relaxation,
-            acceleration,
+            kernel: Kernel { collision, relaxation, acceleration },
             sites: Arc::clone(&sites),
             openings,
             velocities,

@@ -3,34 +3,31 @@
 //!
 //! A row is its runs, packs of sites next to one another, and its single sites, which are gathered
 //! into packs first, with what comes out of bodies put in its place. Both go through the same
-//! collision.
+//! collision, which is compiled once for both.
 
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use finegrain_framework::pack::{MOST_LANES, Pack};
+use finegrain_framework::pack::{Bypass, MOST_LANES, Pack, Target, prefetch};
 use finegrain_framework::space::Grid;
 use finegrain_framework::space::grid::RowsMut;
 use finegrain_framework::{
     ColumnId, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, State, View,
 };
 
-use crate::acceleration::Acceleration;
 use crate::around::{Around, wrap};
 use crate::collision::Collide;
+use crate::kernel::{Accelerations, Kernel, Slots};
 use crate::lattice::Lattice;
 use crate::opening::{Edge, Openings};
-use crate::relaxation::Relaxation;
-use crate::sites::{Run, Single, Sites};
+use crate::sites::{Single, Sites};
 
 /// Streams and collides.
 pub(crate) struct Stream<T, L, C, const Q: usize> {
     pub now: [State<T>; Q],
     pub next: [Rate<T>; Q],
     pub lattice: PhantomData<L>,
-    pub collision: C,
-    pub relaxation: Relaxation,
-    pub acceleration: Acceleration,
+    pub kernel: Kernel<C>,
     pub sites: Arc<Sites<T>>,
     pub openings: Openings,
     /// The velocities as a slice.
@@ -39,8 +36,8 @@ pub(crate) struct Stream<T, L, C, const Q: usize> {
 
 /// Working memory of one worker.
 pub(crate) struct Scratch<T> {
-    /// Acceleration of every site of a row.
-    acceleration: [Vec<T>; 3],
+    /// Acceleration of every site of a row, if it varies.
+    pub acceleration: [Vec<T>; 3],
 }
 
 impl<T> Default for Scratch<T> {
@@ -49,8 +46,44 @@ impl<T> Default for Scratch<T> {
     }
 }
 
+/// Packs between the one that is collided and the one that memory is asked for.
+const AHEAD: usize = 6;
+
 /// Single sites as one group of packs.
-type Group<T> = [T; MOST_LANES];
+pub(crate) type Group<T> = [T; MOST_LANES];
+
+/// What is collided in one go.
+pub(crate) enum Part<'a> {
+    /// From one place of the row to another.
+    Run([usize; 2]),
+    /// At most [`MOST_LANES`] of them.
+    Singles(&'a [Single]),
+}
+
+/// Populations pulled from one set of columns into another.
+struct TwoGrids<'a, V: Pack, const Q: usize> {
+    from: [&'a [V::Vector]; Q],
+    to: [Target<'a, V::Vector>; Q],
+}
+
+impl<V: Pack, const Q: usize> Slots<V, Q> for TwoGrids<'_, V, Q> {
+    #[inline(always)]
+    fn arrived(&self, i: usize) -> [V::Vector; Q] {
+        let mut f = [self.from[0][i]; Q];
+        for q in 0..Q {
+            prefetch(self.from[q], i + AHEAD);
+            f[q] = self.from[q][i];
+        }
+        f
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, i: usize, f: [V; Q]) {
+        for q in 0..Q {
+            self.to[q].write(i, f[q].vector());
+        }
+    }
+}
 
 impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
     #[inline(always)]
@@ -60,106 +93,71 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
         near: &Near<'_, Grid>,
         next: &mut [RowsMut<'_, T>; Q],
         scratch: &mut Scratch<T>,
+        bypass: Option<Bypass<'_>>,
         time: f64,
     ) {
         let [nx, ny, _] = near.domain().shape();
         let views: [View<'_, T>; Q] = self.now.map(|column| near.state(column));
-        let is_uniform = self.acceleration.field.is_none();
-        for (a, row) in scratch.acceleration.iter_mut().enumerate() {
-            row.clear();
-            row.resize(nx, T::of(self.acceleration.uniform[a]));
-        }
+        let uniform = self.kernel.uniform::<V>(simd);
+        let varies = self.kernel.acceleration.field.is_some();
+        let mut gathered = Gathered::new();
+        let mut after: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
         for (j, k) in near.sub_domain().rows() {
             let number = k * ny + j;
             let (runs, singles) = (self.sites.runs(number), self.sites.singles(number));
             if runs.is_empty() && singles.is_empty() {
                 continue;
             }
-            if !is_uniform {
-                for x in 0..nx {
-                    let given = self.acceleration.at([x, j, k], time);
-                    for a in 0..L::DIMS {
-                        scratch.acceleration[a][x] = T::of(given[a]);
-                    }
-                }
-            }
+            self.kernel.accelerate(&mut scratch.acceleration, nx, (j, k), time);
             let around = Around::new(near, &views, self.velocities, (j, k));
             let mut from: [&[T]; Q] = [&[]; Q];
             for q in 0..Q {
                 from[q] = around.source(q);
             }
             let mut to = next.each_mut().map(|rows| rows.row(j, k));
-            for &run in runs {
-                self.run_of_sites::<V>(simd, run, &from, &mut to, &scratch.acceleration);
-            }
-            for group in singles.chunks(MOST_LANES) {
-                let mut gathered =
-                    Gathered::new(group, &self.sites, &around, &from, &scratch.acceleration);
-                self.complete(group, &around, &mut gathered, (j, k), time);
-                self.single_sites::<V>(simd, group, &mut gathered, &mut to);
-            }
-        }
-    }
-
-    /// Sites that pull from the fluid only.
-    #[inline(always)]
-    fn run_of_sites<V: Pack<Scalar = T>>(
-        &self,
-        simd: V::Simd,
-        run: Run,
-        from: &[&[T]; Q],
-        to: &mut [&mut [T]; Q],
-        acceleration: &[Vec<T>; 3],
-    ) {
-        let (start, end) = (run.start as usize, run.end as usize);
-        // The last pack overlaps the one before: the same numbers are computed from what has not
-        // been touched. A loop, so that the collision is compiled once for both.
-        let parts = [[start, end], [end - V::LANES, end]];
-        let is_whole = (end - start).is_multiple_of(V::LANES);
-        for &part in &parts[..if is_whole { 1 } else { 2 }] {
-            self.packs::<V>(simd, part, from, to, acceleration);
-        }
-    }
-
-    /// As many whole packs as fit between two places of a row.
-    #[inline(always)]
-    fn packs<V: Pack<Scalar = T>>(
-        &self,
-        simd: V::Simd,
-        [start, end]: [usize; 2],
-        from: &[&[T]; Q],
-        to: &mut [&mut [T]; Q],
-        acceleration: &[Vec<T>; 3],
-    ) {
-        let count = (end - start) / V::LANES;
-        let mut sources: [&[V::Vector]; Q] = [&[]; Q];
-        for q in 0..Q {
-            // Never out of the row: runs keep away from its ends.
-            let shift = L::VELOCITIES[q][0];
-            let first = (start as i32 - shift) as usize;
-            let last = (end as i32 - shift) as usize;
-            sources[q] = &V::packs(simd, &from[q][first..last])[..count];
-        }
-        let targets =
-            to.each_mut().map(|row| &mut V::packs_mut(simd, &mut row[start..end])[..count]);
-        let mut forces: [&[V::Vector]; 3] = [&[]; 3];
-        for a in 0..3 {
-            forces[a] = &V::packs(simd, &acceleration[a][start..end])[..count];
-        }
-        let zero = V::splat(simd, T::zero());
-        for i in 0..count {
-            let mut f = [zero; Q];
-            for q in 0..Q {
-                f[q] = V::of(simd, sources[q][i]);
-            }
-            let mut force = [zero; 3];
-            for a in 0..L::DIMS {
-                force[a] = V::of(simd, forces[a][i]);
-            }
-            let omega = self.relaxation.rate::<L, V, Q>(&f);
-            let after = self.collision.collide::<L, V, Q>(f, force, omega);
-            for q in 0..Q {
-                targets[q][i] = after[q].vector();
+            let parts = runs.iter().flat_map(|run| run.parts::<T>(nx)).map(Part::Run);
+            for part in parts.chain(singles.chunks(MOST_LANES).map(Part::Singles)) {
+                let (mut slots, varying, count) = match part {
+                    Part::Run([start, end]) => {
+                        let mut sources: [&[V::Vector]; Q] = [&[]; Q];
+                        for (q, wrapped) in gathered.f.iter_mut().enumerate() {
+                            let run = shifted(from[q], start, end, L::VELOCITIES[q][0], wrapped);
+                            sources[q] = V::packs(simd, run);
+                        }
+                        let to = to.each_mut().map(|row| {
+                            Target::new(V::packs_mut(simd, &mut row[start..end]), bypass)
+                        });
+                        let varying = varies.then(|| {
+                            scratch.acceleration.each_ref().map(|a| V::packs(simd, &a[start..end]))
+                        });
+                        (TwoGrids { from: sources, to }, varying, (end - start) / V::LANES)
+                    }
+                    Part::Singles(group) => {
+                        gathered.gather::<L>(group, &from, &scratch.acceleration, varies);
+                        for (place, single) in group.iter().enumerate() {
+                            for link in self.sites.links(single) {
+                                gathered.f[usize::from(link.q)][place] =
+                                    around.returned(link, single.x as usize);
+                            }
+                        }
+                        self.complete(group, &around, &mut gathered, (j, k), time);
+                        let from = gathered.f.each_ref().map(|f| V::packs(simd, f));
+                        let to = after.each_mut().map(|f| Target::new(V::packs_mut(simd, f), None));
+                        let varying = varies
+                            .then(|| gathered.acceleration.each_ref().map(|a| V::packs(simd, a)));
+                        let count = group.len().div_ceil(V::LANES);
+                        (TwoGrids { from, to }, varying, count)
+                    }
+                };
+                let accelerations = Accelerations { uniform, varying };
+                self.kernel.collide::<L, V, _, Q>(simd, count, &mut slots, &accelerations);
+                if let Part::Singles(group) = part {
+                    for q in 0..Q {
+                        for (place, single) in group.iter().enumerate() {
+                            to[q][single.x as usize] = after[q][place];
+                        }
+                    }
+                }
             }
         }
     }
@@ -176,86 +174,84 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Stream<T, L, C, Q> {
         for (place, single) in singles.iter().enumerate() {
             let Some(number) = single.opening() else { continue };
             let x = single.x as usize;
-            let acceleration = gathered.acceleration.map(|a| a[place].as_f64());
-            let edge = Edge { site: [x, j, k], time, acceleration };
-            let mut f = gathered.f.map(|f| f[place]);
-            let opening = &self.openings.all[number];
             let earlier = |n: i32| {
+                let opening = &self.openings.all[number];
                 let mut to = [0; 3];
                 to[opening.axis()] = n * opening.inward();
                 std::array::from_fn(|q| around.at(q, x, to))
             };
-            self.openings.complete::<L, T, Q>(number, &mut f, &edge, earlier);
+            let acceleration = self.kernel.acceleration.at([x, j, k], time);
+            let edge = Edge { site: [x, j, k], time, acceleration };
+            let mut f = gathered.f.map(|f| f[place]);
+            self.openings.complete::<L, T, Q>(number, &mut f, &edge, &earlier);
             for q in 0..Q {
                 gathered.f[q][place] = f[q];
             }
         }
     }
+}
 
-    /// Collides at most [`MOST_LANES`] single sites.
-    #[inline(always)]
-    fn single_sites<V: Pack<Scalar = T>>(
-        &self,
-        simd: V::Simd,
-        singles: &[Single],
-        gathered: &mut Gathered<T, Q>,
-        to: &mut [&mut [T]; Q],
-    ) {
-        let Gathered { f, acceleration } = gathered;
-        for first in (0..singles.len()).step_by(V::LANES) {
-            let mut pack = [V::splat(simd, T::zero()); Q];
-            for q in 0..Q {
-                pack[q] = V::load(simd, &f[q][first..]);
-            }
-            let mut force = [V::splat(simd, T::zero()); 3];
-            for a in 0..L::DIMS {
-                force[a] = V::load(simd, &acceleration[a][first..]);
-            }
-            let omega = self.relaxation.rate::<L, V, Q>(&pack);
-            let after = self.collision.collide::<L, V, Q>(pack, force, omega);
-            for q in 0..Q {
-                after[q].store(&mut f[q][first..]);
-            }
-        }
-        for (place, single) in singles.iter().enumerate() {
-            for q in 0..Q {
-                to[q][single.x as usize] = f[q][place];
-            }
-        }
+/// What streams along a row, with a velocity of `c` along it, to its sites from `start` to `end`; by way
+/// of `wrapped` if that is around an end of the row, which only a line does.
+#[inline(always)]
+fn shifted<'a, T: Real>(
+    row: &'a [T],
+    start: usize,
+    end: usize,
+    c: i32,
+    wrapped: &'a mut Group<T>,
+) -> &'a [T] {
+    let (first, last) =
+        (start.wrapping_add_signed(-c as isize), end.wrapping_add_signed(-c as isize));
+    if let Some(inside) = row.get(first..last) {
+        return inside;
     }
+    let count = end - start;
+    if c > 0 {
+        wrapped[0] = row[row.len() - 1];
+        wrapped[1..count].copy_from_slice(&row[..last]);
+    } else {
+        wrapped[..count - 1].copy_from_slice(&row[first..]);
+        wrapped[count - 1] = row[0];
+    }
+    &wrapped[..count]
 }
 
 /// What arrives at single sites, and accelerates them.
-struct Gathered<T, const Q: usize> {
-    f: [Group<T>; Q],
-    acceleration: [Group<T>; 3],
+pub(crate) struct Gathered<T, const Q: usize> {
+    pub f: [Group<T>; Q],
+    pub acceleration: [Group<T>; 3],
 }
 
 impl<T: Real, const Q: usize> Gathered<T, Q> {
-    /// Of at most [`MOST_LANES`] sites, with what comes out of bodies in its place.
+    /// Of no sites.
+    pub fn new() -> Self {
+        let none = [T::zero(); MOST_LANES];
+        Self { f: [none; Q], acceleration: [none; 3] }
+    }
+
+    /// Of at most [`MOST_LANES`] sites; what comes out of bodies is still missing.
     #[inline(always)]
-    fn new(
+    fn gather<L: Lattice<Q>>(
+        &mut self,
         singles: &[Single],
-        sites: &Sites<T>,
-        around: &Around<'_, '_, T>,
         from: &[&[T]; Q],
         accelerations: &[Vec<T>; 3],
-    ) -> Self {
-        let mut f: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
-        let mut acceleration: [Group<T>; 3] = [[T::zero(); MOST_LANES]; 3];
-        for (place, single) in singles.iter().enumerate() {
-            let x = single.x as usize;
-            for q in 0..Q {
-                f[q][place] = from[q][wrap(x as i32 - around.velocity(q)[0], from[q].len())];
-            }
-            for link in sites.links(single) {
-                f[usize::from(link.q)][place] = around.returned(link, x);
-            }
-            for a in 0..3 {
-                acceleration[a][place] = accelerations[a][x];
+        varies: bool,
+    ) {
+        for q in 0..Q {
+            let (row, shift) = (from[q], L::VELOCITIES[q][0]);
+            for (f, single) in self.f[q].iter_mut().zip(singles) {
+                *f = row[wrap(single.x as i32 - shift, row.len())];
             }
         }
-        Self { f, acceleration }
+        if varies {
+            for (a, row) in self.acceleration.iter_mut().zip(accelerations) {
+                for (a, single) in a.iter_mut().zip(singles) {
+                    *a = row[single.x as usize];
+                }
+            }
+        }
     }
 }
 
@@ -265,6 +261,7 @@ struct Task<'s, 'n, T, L, C, const Q: usize> {
     near: &'s Near<'n, Grid>,
     next: &'s mut [RowsMut<'n, T>; Q],
     scratch: &'s mut Scratch<T>,
+    bypass: Option<Bypass<'s>>,
     time: f64,
 }
 
@@ -275,8 +272,8 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> pulp::WithSimd
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Self { stream, near, next, scratch, time } = self;
-        stream.run::<T::Pack<S>>(simd, near, next, scratch, time);
+        let Self { stream, near, next, scratch, bypass, time } = self;
+        stream.run::<T::Pack<S>>(simd, near, next, scratch, bypass, time);
     }
 }
 
@@ -301,7 +298,9 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> RateStage<Grid> for 
         let mut next = self.next.map(|rate| rates.rows(rate));
         // Populations are stored after the collision of their step.
         let time = moment.time + moment.dt;
-        pulp::Arch::new().dispatch(Task { stream: self, near, next: &mut next, scratch, time });
+        let bypass = rates.bypass();
+        let task = Task { stream: self, near, next: &mut next, scratch, bypass, time };
+        pulp::Arch::new().dispatch(task);
         Ok(())
     }
 }
