@@ -225,7 +225,18 @@ impl<'a, D: Domain> Leg<'a, D> {
         let key = base ^ parity ^ self.step.swapped_before(entry);
         let tables = &self.desk.tables;
         let table = tables.iter().find(|(k, _)| *k == key).expect("all keys are laid out");
-        Place { domain: self.domain, partition: self.partition, id, slots: &table.1 }
+        let shifts = match entry {
+            Some(entry) => self.step.stages[self.step.entries[entry].stage].shifts(),
+            None => &[],
+        };
+        Place {
+            domain: self.domain,
+            partition: self.partition,
+            id,
+            slots: &table.1,
+            shifts,
+            displaced: self.step.displaced,
+        }
     }
 
     /// Hands `task` the worker's scratch, one for each stage.
@@ -294,8 +305,10 @@ impl<'a, D: Domain> Leg<'a, D> {
     fn check_finite(&self, step: u64, part: usize, sub_domain: usize) -> Result<(), Cause> {
         let next = self.step.part_start[part + 1];
         let next = Some(next).filter(|&next| next < self.step.entries.len());
-        // SAFETY: as an update part; the workers' last part has just been run here.
-        let own = unsafe { Own::new(self.place(step, next, sub_domain)) };
+        let place = self.place(step, next, sub_domain);
+        // SAFETY: as an update part; the workers' last part has just been run here, and what it owned is
+        // looked at.
+        let own = unsafe { Own::new(Place { shifts: &self.step.last_shifts, ..place }) };
         match self.desk.checked.iter().find(|&&id| !own.is_finite(id)) {
             Some(&id) => {
                 Err(Cause::NotFinite { column: self.columns.column(id).name().to_owned() })

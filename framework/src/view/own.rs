@@ -65,7 +65,7 @@ impl<'a, D: Domain> Rates<'a, D> {
             column.id().0
         );
         self.borrows.claim(column.id());
-        let spans = self.place.partition.spans(self.place.id);
+        let spans = self.place.spans(column.id());
         // SAFETY: the spans are the sub-domain's own; `Rates::new` promises that nobody else touches
         // the column there, and `claim` that it is had only once.
         unsafe { PartMut::new(self.place.base(column.id()), spans) }
@@ -111,9 +111,14 @@ impl<'a, D: Domain> Own<'a, D> {
         self.place.id
     }
 
-    /// The points it owns.
+    /// The points it owns, but in columns with an offset.
     pub fn spans(&self) -> &'a [Span] {
         self.place.partition.spans(self.place.id)
+    }
+
+    /// Whether it owns other points of a column.
+    pub(crate) fn is_shifted(&self, id: ColumnId) -> bool {
+        self.place.shifts.iter().any(|(column, _)| *column == id)
     }
 
     /// Own rates.
@@ -149,14 +154,14 @@ impl<'a, D: Domain> Own<'a, D> {
         self.borrows.share(id);
         // SAFETY: the spans are the sub-domain's own; `Own::new` promises that nobody else touches
         // them, and `share` that the column is not borrowed for writing.
-        unsafe { Part::new(self.place.base(id), self.spans()) }
+        unsafe { Part::new(self.place.base(id), self.place.spans(id)) }
     }
 
     /// Own part of any column, to be written; panics as [`Own::state_mut`].
     pub(crate) fn part_mut<T: Element>(&mut self, id: ColumnId) -> PartMut<'a, T> {
         self.borrows.claim(id);
         // SAFETY: as in `part`, with `claim` for the only borrow of the column.
-        unsafe { PartMut::new(self.place.base(id), self.spans()) }
+        unsafe { PartMut::new(self.place.base(id), self.place.spans(id)) }
     }
 
     /// Element type of a column.
@@ -181,9 +186,9 @@ impl<'a, D: Domain> Own<'a, D> {
         ) -> bool {
             assert!(!own.borrows.exclusive.contains(id), "column {} is being written", id.0);
             // SAFETY: as in `Own::part`; what is read here does not outlive this borrow of `own`.
-            let part = unsafe { Part::new(own.place.base::<T>(id), own.spans()) };
+            let part = unsafe { Part::new(own.place.base::<T>(id), own.place.spans(id)) };
             // x * 0 is 0 for finite x and NaN otherwise; eight sums, so that it vectorises.
-            (0..own.spans().len()).all(|k| {
+            (0..own.place.spans(id).len()).all(|k| {
                 let values = part.span(k);
                 let (chunks, rest) = values.as_chunks::<8>();
                 let mut sums = [T::zero(); 8];
