@@ -9,7 +9,7 @@ mod bypass;
 mod prefetch;
 
 pub(crate) use bypass::Fence;
-pub use bypass::{Bypass, Target};
+pub use bypass::{Bypass, Targets};
 pub use prefetch::prefetch;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

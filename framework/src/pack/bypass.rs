@@ -61,48 +61,54 @@ impl std::fmt::Debug for Fence {
     }
 }
 
-/// Vectors to be written whole, past the caches if there is leave to and the processor can.
+/// Rows of vectors that are written side by side, past the caches if there is leave to and the
+/// processor can.
 #[derive(Debug)]
-pub struct Target<'a, V> {
-    to: &'a mut [V],
+pub struct Targets<'a, V, const N: usize> {
+    to: [&'a mut [V]; N],
     /// Vectors are as long as the processor writes at once, and aligned.
     is_past: bool,
 }
 
-impl<'a, V: Pod> Target<'a, V> {
+impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
     /// Worth it past the caches only if whole lines are written, one vector after the other.
     #[inline(always)]
-    pub fn new(to: &'a mut [V], bypass: Option<Bypass<'a>>) -> Self {
-        let is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>())
-            && to.as_ptr().addr().is_multiple_of(size_of::<V>());
+    pub fn new(to: [&'a mut [V]; N], bypass: Option<Bypass<'a>>) -> Self {
+        let mut is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>());
+        for to in &to {
+            is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
+        }
         Self { to, is_past }
     }
 
-    /// Writes vector `i`.
+    /// Writes vector `i` of every row.
     ///
     /// # Panics
     /// If there is no such vector.
     #[inline(always)]
-    pub fn write(&mut self, i: usize, value: V) {
-        let to = &mut self.to[i];
+    pub fn write(&mut self, i: usize, values: [V; N]) {
         #[cfg(target_arch = "x86_64")]
         if self.is_past {
             use std::arch::x86_64::{__m256i, __m512i, _mm256_stream_si256, _mm512_stream_si512};
-            let address = std::ptr::from_mut(to);
-            if size_of::<V>() == 64 {
-                // SAFETY: `new` saw leave for 64 bytes, which is there only with AVX-512, and that vectors
-                // are aligned. This one is borrowed exclusively, and plain bytes. Other threads see it
-                // only after the fence, which outlives `self`; to this one such writes are in order.
-                unsafe { _mm512_stream_si512(address.cast::<__m512i>(), bytemuck::cast(value)) };
-                return;
+            for n in 0..N {
+                let to = std::ptr::from_mut(&mut self.to[n][i]);
+                // SAFETY: `new` saw leave for as many bytes as a vector has, which there is only on
+                // processors with these instructions, and that vectors are aligned. This one is borrowed
+                // exclusively, and plain bytes. Other threads see it only after the fence, which outlives
+                // `self`; to this one such writes are in order.
+                unsafe {
+                    match size_of::<V>() {
+                        64 => _mm512_stream_si512(to.cast::<__m512i>(), bytemuck::cast(values[n])),
+                        32 => _mm256_stream_si256(to.cast::<__m256i>(), bytemuck::cast(values[n])),
+                        _ => to.write(values[n]),
+                    }
+                }
             }
-            if size_of::<V>() == 32 {
-                // SAFETY: as above, with AVX for 32 bytes.
-                unsafe { _mm256_stream_si256(address.cast::<__m256i>(), bytemuck::cast(value)) };
-                return;
-            }
+            return;
         }
-        *to = value;
+        for n in 0..N {
+            self.to[n][i] = values[n];
+        }
     }
 }
 
@@ -124,9 +130,9 @@ mod tests {
                 assert!(pays || fence.bypass().is_none());
                 let places = bytemuck::cast_slice_mut::<u8, V>(&mut lines.0[size..]);
                 let count = places.len();
-                let mut target = Target::new(places, fence.bypass());
+                let mut targets = Targets::new([places], fence.bypass());
                 for i in 0..count {
-                    target.write(i, value);
+                    targets.write(i, [value]);
                 }
                 drop(fence);
                 assert!(lines.0[..size].iter().all(|&b| b == 7));

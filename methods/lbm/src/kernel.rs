@@ -1,94 +1,224 @@
-//! The collision of packs of sites, wherever their populations are.
+//! The collision of packs of sites: all that is compiled for every collision and instruction set.
+
+use std::marker::PhantomData;
 
 use finegrain_framework::Real;
-use finegrain_framework::pack::Pack;
+use finegrain_framework::pack::{Bypass, Pack, Targets, prefetch};
 
-use crate::acceleration::Acceleration;
 use crate::collision::Collide;
 use crate::lattice::Lattice;
 use crate::relaxation::Relaxation;
 
-/// What happens at a site once its populations have arrived.
-pub(crate) struct Kernel<C> {
-    pub collision: C,
-    pub relaxation: Relaxation,
-    pub acceleration: Acceleration,
+/// Packs between the one that is collided and the one that memory is asked for.
+const AHEAD: usize = 6;
+
+/// Acceleration of each site, in each direction, if it varies.
+pub(crate) type Varying<'a, T> = Option<[&'a [T]; 3]>;
+
+/// Collides sites next to one another, as many as make whole packs.
+pub(crate) trait Collider<T, const Q: usize>: Send + Sync {
+    /// From the populations that arrive to those that leave, elsewhere in memory.
+    fn pull(
+        &self,
+        from: &[&[T]; Q],
+        to: [&mut [T]; Q],
+        acceleration: Varying<'_, T>,
+        bypass: Option<Bypass<'_>>,
+    );
+
+    /// In place, where what leaves takes the place of what arrived from there: that of the opposite
+    /// velocity.
+    fn exchange(&self, slots: [&mut [T]; Q], acceleration: Varying<'_, T>);
 }
 
-/// Where packs of populations arrive, and leave from.
-pub(crate) trait Slots<V: Pack, const Q: usize> {
+/// The collision of a lattice.
+pub(crate) struct Kernel<L, C> {
+    pub lattice: PhantomData<L>,
+    pub collision: C,
+    pub relaxation: Relaxation,
+    /// Acceleration where it does not vary, in lattice units.
+    pub uniform: [f64; 3],
+}
+
+impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Collider<T, Q> for Kernel<L, C> {
+    fn pull(
+        &self,
+        from: &[&[T]; Q],
+        to: [&mut [T]; Q],
+        acceleration: Varying<'_, T>,
+        bypass: Option<Bypass<'_>>,
+    ) {
+        let memory = Apart { from, to, bypass };
+        pulp::Arch::new().dispatch(Task { kernel: self, memory, acceleration });
+    }
+
+    fn exchange(&self, slots: [&mut [T]; Q], acceleration: Varying<'_, T>) {
+        let memory = InPlace { slots };
+        pulp::Arch::new().dispatch(Task { kernel: self, memory, acceleration });
+    }
+}
+
+/// Where populations arrive, and leave from.
+trait Memory<T: Real, const Q: usize> {
+    /// The same in packs.
+    type Packs<V: Pack<Scalar = T>>: Slots<V, Q>;
+    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> Self::Packs<V>;
+}
+
+/// Packs of populations that arrive, and leave.
+trait Slots<V: Pack, const Q: usize> {
+    /// Number of packs.
+    fn count(&self) -> usize;
     /// The populations that have arrived at pack `i`.
     fn arrived(&self, i: usize) -> [V::Vector; Q];
     /// Leaves those after the collision where they go on from.
     fn leave(&mut self, i: usize, f: [V; Q]);
 }
 
-/// Acceleration of packs of sites.
-pub(crate) struct Accelerations<'a, V: Pack> {
-    pub uniform: [V; 3],
-    /// Of each pack, if it varies.
-    pub varying: Option<[&'a [V::Vector]; 3]>,
+/// Two sets of columns.
+struct Apart<'a, 'b, T, const Q: usize> {
+    from: &'b [&'a [T]; Q],
+    to: [&'a mut [T]; Q],
+    bypass: Option<Bypass<'a>>,
 }
 
-impl<C> Kernel<C> {
-    /// Collides `count` packs.
+impl<'a, T: Real, const Q: usize> Memory<T, Q> for Apart<'a, '_, T, Q> {
+    type Packs<V: Pack<Scalar = T>> = ApartPacks<'a, V, Q>;
+
     #[inline(always)]
-    pub fn collide<L: Lattice<Q>, V: Pack, S: Slots<V, Q>, const Q: usize>(
+    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> ApartPacks<'a, V, Q> {
+        let mut from: [&[V::Vector]; Q] = [&[]; Q];
+        for q in 0..Q {
+            from[q] = V::packs(simd, self.from[q]);
+        }
+        let to = self.to.map(|to| V::packs_mut(simd, to));
+        ApartPacks { from, to: Targets::new(to, self.bypass) }
+    }
+}
+
+struct ApartPacks<'a, V: Pack, const Q: usize> {
+    from: [&'a [V::Vector]; Q],
+    to: Targets<'a, V::Vector, Q>,
+}
+
+impl<V: Pack, const Q: usize> Slots<V, Q> for ApartPacks<'_, V, Q> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.from[0].len()
+    }
+
+    #[inline(always)]
+    fn arrived(&self, i: usize) -> [V::Vector; Q] {
+        let mut f = [self.from[0][i]; Q];
+        for q in 0..Q {
+            prefetch(self.from[q], i + AHEAD);
+            f[q] = self.from[q][i];
+        }
+        f
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, i: usize, f: [V; Q]) {
+        let mut vectors = [f[0].vector(); Q];
+        for q in 0..Q {
+            vectors[q] = f[q].vector();
+        }
+        self.to.write(i, vectors);
+    }
+}
+
+/// One set of columns.
+struct InPlace<'a, T, const Q: usize> {
+    slots: [&'a mut [T]; Q],
+}
+
+impl<'a, T: Real, const Q: usize> Memory<T, Q> for InPlace<'a, T, Q> {
+    type Packs<V: Pack<Scalar = T>> = InPlacePacks<'a, V, Q>;
+
+    #[inline(always)]
+    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> InPlacePacks<'a, V, Q> {
+        InPlacePacks { slots: self.slots.map(|slots| V::packs_mut(simd, slots)) }
+    }
+}
+
+struct InPlacePacks<'a, V: Pack, const Q: usize> {
+    slots: [&'a mut [V::Vector]; Q],
+}
+
+impl<V: Pack, const Q: usize> Slots<V, Q> for InPlacePacks<'_, V, Q> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.slots[0].len()
+    }
+
+    #[inline(always)]
+    fn arrived(&self, i: usize) -> [V::Vector; Q] {
+        let mut f = [self.slots[0][i]; Q];
+        for q in 0..Q {
+            prefetch(self.slots[q], i + AHEAD);
+            f[q] = self.slots[q][i];
+        }
+        f
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, i: usize, f: [V; Q]) {
+        self.slots[0][i] = f[0].vector();
+        for n in 0..Q / 2 {
+            let (q, back) = (2 * n + 1, 2 * n + 2);
+            self.slots[q][i] = f[back].vector();
+            self.slots[back][i] = f[q].vector();
+        }
+    }
+}
+
+/// A collision, to be compiled for every instruction set.
+struct Task<'a, T, L, C, M, const Q: usize> {
+    kernel: &'a Kernel<L, C>,
+    memory: M,
+    acceleration: Varying<'a, T>,
+}
+
+impl<T: Real, L: Lattice<Q>, C: Collide<T>, M: Memory<T, Q>, const Q: usize> pulp::WithSimd
+    for Task<'_, T, L, C, M, Q>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Self { kernel, memory, acceleration } = self;
+        kernel.collide::<T::Pack<S>, M, Q>(simd, memory, acceleration);
+    }
+}
+
+impl<L, C> Kernel<L, C> {
+    #[inline(always)]
+    fn collide<V: Pack, M: Memory<V::Scalar, Q>, const Q: usize>(
         &self,
         simd: V::Simd,
-        count: usize,
-        slots: &mut S,
-        accelerations: &Accelerations<'_, V>,
+        memory: M,
+        acceleration: Varying<'_, V::Scalar>,
     ) where
+        L: Lattice<Q>,
         C: Collide<V::Scalar>,
     {
-        for i in 0..count {
+        let [x, y, z] = self.uniform.map(V::Scalar::of);
+        let uniform = [V::splat(simd, x), V::splat(simd, y), V::splat(simd, z)];
+        let mut slots = memory.packs::<V>(simd);
+        for i in 0..slots.count() {
             let vectors = slots.arrived(i);
-            let mut f = [accelerations.uniform[0]; Q];
+            let mut f = [uniform[0]; Q];
             for q in 0..Q {
                 f[q] = V::of(simd, vectors[q]);
             }
-            let mut acceleration = accelerations.uniform;
-            if let Some(varying) = accelerations.varying {
+            let mut here = uniform;
+            if let Some(varying) = acceleration {
                 for a in 0..L::DIMS {
-                    acceleration[a] = V::of(simd, varying[a][i]);
+                    here[a] = V::of(simd, V::packs(simd, varying[a])[i]);
                 }
             }
             let omega = self.relaxation.rate::<L, V, Q>(&f);
-            slots.leave(i, self.collision.collide::<L, V, Q>(f, acceleration, omega));
+            slots.leave(i, self.collision.collide::<L, V, Q>(f, here, omega));
         }
-    }
-
-    /// Acceleration of the sites of a row into `row`, if it varies.
-    pub fn accelerate<T: Real>(
-        &self,
-        row: &mut [Vec<T>; 3],
-        nx: usize,
-        (j, k): (usize, usize),
-        time: f64,
-    ) {
-        if self.acceleration.field.is_none() {
-            return;
-        }
-        for values in row.iter_mut() {
-            values.resize(nx, T::zero());
-        }
-        for x in 0..nx {
-            let given = self.acceleration.at([x, j, k], time);
-            for (values, given) in row.iter_mut().zip(given) {
-                values[x] = T::of(given);
-            }
-        }
-    }
-
-    /// The acceleration that is the same everywhere.
-    #[inline(always)]
-    pub fn uniform<V: Pack>(&self, simd: V::Simd) -> [V; 3] {
-        let [x, y, z] = self.acceleration.uniform;
-        [
-            V::splat(simd, V::Scalar::of(x)),
-            V::splat(simd, V::Scalar::of(y)),
-            V::splat(simd, V::Scalar::of(z)),
-        ]
     }
 }

@@ -13,7 +13,9 @@
 //! | `hermite.rs`, `frame.rs` | moments of populations, and populations of moments |
 //! | `relaxation.rs` | how fast the stress relaxes, eddies included |
 //! | `collision/` | one collision each, reading like its paper |
-//! | `stream.rs`, `around.rs` | the step: pull, collide, write |
+//! | `stream.rs` | the step with two sets of columns: pull, collide, write |
+//! | `in_place.rs` | the step with one set |
+//! | `row.rs`, `around.rs` | rows of sites, and the populations around them |
 //! | `kernel.rs` | the collision of packs of sites |
 //! | `sites.rs`, `link.rs` | what bodies do to rows of sites, and to populations |
 //! | [`opening`] | velocity inlets, pressure and non-reflecting outlets |
@@ -71,9 +73,11 @@ mod derived;
 mod flow;
 mod frame;
 mod hermite;
+mod in_place;
 mod kernel;
 mod link;
 mod relaxation;
+mod row;
 mod sites;
 mod stream;
 
@@ -85,5 +89,5 @@ pub use lattice::{Lattice, LatticeKind};
 pub use mesh::Mesh;
 pub use model::{Compiled, Lbm};
 pub use opening::{Condition, Opening};
-pub use physics::{Fluid, Physics, Scheme};
+pub use physics::{Fluid, Physics, Scheme, Streaming};
 pub use start::Start;

@@ -8,7 +8,7 @@ use crate::collision::Collision;
 use crate::error::{LbmError, finite, not_negative, positive};
 use crate::lattice::LatticeKind;
 use crate::mesh::Mesh;
-use crate::opening::Opening;
+use crate::opening::{Condition, Opening};
 
 /// Shortest relaxation time, in time steps: closer to 1/2 there is hardly any viscosity left to tell
 /// from the rounding of time step and spacing.
@@ -82,6 +82,18 @@ impl Physics {
     }
 }
 
+/// Where populations are while they stream from site to site.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Streaming {
+    /// In two sets of columns, from one to the other: covers everything.
+    #[default]
+    TwoGrids,
+    /// In one set (esoteric pull, Lehmann 2022): half of the memory, and two thirds of what is moved in a
+    /// step. Bodies turn populations back half-way, and no opening lets waves out.
+    InPlace,
+}
+
 /// How it is modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -92,6 +104,8 @@ pub struct Scheme {
     pub collision: Collision,
     /// How they are turned back at bodies.
     pub wall: Wall,
+    /// Where populations are kept.
+    pub streaming: Streaming,
     /// Smagorinsky's constant (1963) of eddies that the mesh does not hold, which have a viscosity of
     /// `(C dx)^2 |S|`; none if `None`. Between 0.1 and 0.2 usually.
     pub smagorinsky: Option<f64>,
@@ -101,11 +115,20 @@ impl Scheme {
     /// The default collision and walls on a lattice, without eddies.
     pub fn on(lattice: LatticeKind) -> Self {
         let (collision, wall) = (Collision::default(), Wall::default());
-        Self { lattice, collision, wall, smagorinsky: None }
+        Self { lattice, collision, wall, streaming: Streaming::default(), smagorinsky: None }
     }
 
-    pub(crate) fn check(&self) -> Result<(), LbmError> {
+    pub(crate) fn check(&self, physics: &Physics) -> Result<(), LbmError> {
         self.collision.check()?;
+        if self.streaming == Streaming::InPlace {
+            if self.wall != Wall::HalfWay && !physics.bodies.is_empty() {
+                return Err(LbmError::InPlace { what: "walls that are interpolated" });
+            }
+            let lets_out = |o: &Opening| matches!(o.condition, Condition::NonReflecting { .. });
+            if physics.openings.iter().any(lets_out) {
+                return Err(LbmError::InPlace { what: "openings that let waves out" });
+            }
+        }
         self.smagorinsky.map_or(Ok(()), |constant| positive("smagorinsky", constant))
     }
 }

@@ -47,7 +47,7 @@ impl Run {
 
 /// Scalars in a line of the cache, where columns begin: packs of runs lie in lines, so that they are
 /// written whole and, where that is faster, past the cache.
-const fn line<T>() -> usize {
+pub(crate) const fn line<T>() -> usize {
     64 / size_of::<T>()
 }
 

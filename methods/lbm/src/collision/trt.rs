@@ -39,7 +39,10 @@ impl<T: Real> Collide<T> for Trt {
         omega: V,
     ) -> [V; Q] {
         let even_rate = omega;
-        let odd_rate = self.magic.map_or(omega, |magic| odd_rate(omega, magic));
+        let odd_rate = match self.magic {
+            Some(magic) => odd_rate(omega, magic),
+            None => omega,
+        };
         let [half, third] = [0.5, 1.0 / 3.0].map(T::of);
         let (excess, momentum) = flow::moments::<L, V, Q>(&f);
         let density = excess + T::one();
