@@ -18,7 +18,7 @@ use finegrain_framework::{ColumnId, Fault, Handle, Moment, Own, Real, State, Upd
 use crate::around::wrap;
 use crate::lattice::Lattice;
 use crate::mesh::Mesh;
-use crate::row::{Group, Local, Scratch, copy_around, copy_back};
+use crate::row::{Group, Local, Scratch, copy_around, copy_back, none};
 use crate::sites::Sites;
 
 /// Where the population of velocity `q` is that leaves a site, as seen from there.
@@ -83,20 +83,23 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
                 continue;
             }
             self.local.accelerate(scratch, nx, (j, k), time);
-            let mut rows = columns.each_mut().map(|rows| rows.row(j, k));
+            let mut rows = none::<T, Q>();
+            for (row, column) in rows.iter_mut().zip(&mut columns) {
+                *row = column.row(j, k);
+            }
             for [start, end] in runs.iter().flat_map(|run| run.parts::<T>(nx)) {
                 let count = end - start;
                 let first = |q: usize| start as isize + found(L::VELOCITIES[q], q)[0] as isize;
                 let is_inside = |q: usize| first(q) >= 0 && first(q) as usize + count <= nx;
-                let mut wrapped = group.iter_mut().enumerate();
-                let slots = rows.each_mut().map(|row| {
-                    let (q, wrapped) = wrapped.next().expect("there is one for each");
-                    if is_inside(q) {
-                        return &mut row[first(q) as usize..][..count];
-                    }
-                    copy_around(row, first(q), &mut wrapped[..count]);
-                    &mut wrapped[..count]
-                });
+                let mut slots = none::<T, Q>();
+                for (q, (row, wrapped)) in rows.iter_mut().zip(&mut group).enumerate() {
+                    slots[q] = if is_inside(q) {
+                        &mut row[first(q) as usize..][..count]
+                    } else {
+                        copy_around(row, first(q), &mut wrapped[..count]);
+                        &mut wrapped[..count]
+                    };
+                }
                 collider.exchange(slots, scratch.varying(start, end));
                 for q in (0..Q).filter(|&q| !is_inside(q)) {
                     copy_back(&group[q][..count], first(q), rows[q]);

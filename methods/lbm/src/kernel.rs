@@ -8,6 +8,7 @@ use finegrain_framework::pack::{Bypass, Pack, Targets, prefetch};
 use crate::collision::Collide;
 use crate::lattice::Lattice;
 use crate::relaxation::Relaxation;
+use crate::row::none;
 
 /// Packs between the one that is collided and the one that memory is asked for.
 const AHEAD: usize = 6;
@@ -91,7 +92,10 @@ impl<'a, T: Real, const Q: usize> Memory<T, Q> for Apart<'a, '_, T, Q> {
         for q in 0..Q {
             from[q] = V::packs(simd, self.from[q]);
         }
-        let to = self.to.map(|to| V::packs_mut(simd, to));
+        let mut to = none::<V::Vector, Q>();
+        for (packs, row) in to.iter_mut().zip(self.to) {
+            *packs = V::packs_mut(simd, row);
+        }
         ApartPacks { from, to: Targets::new(to, self.bypass) }
     }
 }
@@ -137,7 +141,11 @@ impl<'a, T: Real, const Q: usize> Memory<T, Q> for InPlace<'a, T, Q> {
 
     #[inline(always)]
     fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> InPlacePacks<'a, V, Q> {
-        InPlacePacks { slots: self.slots.map(|slots| V::packs_mut(simd, slots)) }
+        let mut slots = none::<V::Vector, Q>();
+        for (packs, row) in slots.iter_mut().zip(self.slots) {
+            *packs = V::packs_mut(simd, row);
+        }
+        InPlacePacks { slots }
     }
 }
 

@@ -6,6 +6,7 @@ use finegrain_framework::Real;
 use finegrain_framework::pack::MOST_LANES;
 
 use crate::acceleration::Acceleration;
+use crate::around::wrap;
 use crate::kernel::{Collider, Varying};
 use crate::lattice::Lattice;
 use crate::opening::{Edge, Openings};
@@ -109,18 +110,26 @@ impl<T: Real, const Q: usize> Local<T, Q> {
     }
 }
 
-/// Copies what lies in a row from place `first` on, around its ends.
+/// Copies what lies in a row from place `first` on, which is in the row or just before it, around its ends.
 pub(crate) fn copy_around<T: Copy>(row: &[T], first: isize, into: &mut [T]) {
-    let first = first.rem_euclid(row.len() as isize) as usize;
-    let (head, tail) = into.split_at_mut(into.len().min(row.len() - first));
-    head.copy_from_slice(&row[first..first + head.len()]);
-    tail.copy_from_slice(&row[..tail.len()]);
+    let mut place = wrap(first as i32, row.len());
+    for value in into {
+        *value = row[place];
+        place = if place + 1 == row.len() { 0 } else { place + 1 };
+    }
 }
 
 /// Copies it back.
 pub(crate) fn copy_back<T: Copy>(from: &[T], first: isize, row: &mut [T]) {
-    let first = first.rem_euclid(row.len() as isize) as usize;
-    let (head, tail) = from.split_at(from.len().min(row.len() - first));
-    row[first..first + head.len()].copy_from_slice(head);
-    row[..tail.len()].copy_from_slice(tail);
+    let mut place = wrap(first as i32, row.len());
+    for value in from {
+        row[place] = *value;
+        place = if place + 1 == row.len() { 0 } else { place + 1 };
+    }
+}
+
+/// No rows: to be filled in.
+#[inline(always)]
+pub(crate) fn none<'a, T, const Q: usize>() -> [&'a mut [T]; Q] {
+    std::array::from_fn(|_| <&mut [T]>::default())
 }

@@ -15,7 +15,7 @@ use finegrain_framework::{
 use crate::around::{Around, wrap};
 use crate::lattice::{Lattice, opposite};
 use crate::physics::Streaming;
-use crate::row::{Group, Local, Scratch, copy_around};
+use crate::row::{Group, Local, Scratch, copy_around, none};
 
 /// Streams and collides.
 pub(crate) struct Stream<T, L, const Q: usize> {
@@ -63,7 +63,10 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> RateStage<Grid> for Stream<T, L, Q>
             for q in 0..Q {
                 from[q] = around.source(q);
             }
-            let mut to = next.each_mut().map(|rows| rows.row(j, k));
+            let mut to = none::<T, Q>();
+            for (row, column) in to.iter_mut().zip(&mut next) {
+                *row = column.row(j, k);
+            }
             for [start, end] in runs.iter().flat_map(|run| run.parts::<T>(nx)) {
                 let mut sources: [&[T]; Q] = [&[]; Q];
                 for (q, wrapped) in group.iter_mut().enumerate() {
@@ -74,8 +77,11 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> RateStage<Grid> for Stream<T, L, Q>
                         &wrapped[..end - start]
                     });
                 }
-                let to = to.each_mut().map(|row| &mut row[start..end]);
-                collider.pull(&sources, to, scratch.varying(start, end), bypass);
+                let mut targets = none::<T, Q>();
+                for (target, row) in targets.iter_mut().zip(&mut to) {
+                    *target = &mut row[start..end];
+                }
+                collider.pull(&sources, targets, scratch.varying(start, end), bypass);
             }
             for singles in singles.chunks(MOST_LANES) {
                 for (q, arrived) in group.iter_mut().enumerate() {
