@@ -97,8 +97,8 @@ pub enum LbmError {
     },
     /// Streaming in place does not cover it.
     #[error(
-        "streaming in place does not cover {what}: use half-way walls and openings with a velocity or a \
-         pressure, or two grids"
+        "streaming in place does not cover {what}: ask for two grids, or for half-way walls and openings \
+         with a velocity or a pressure"
     )]
     InPlace {
         /// What.

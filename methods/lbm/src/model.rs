@@ -107,7 +107,7 @@ impl<T: Real> Lbm<T> {
     ) -> Result<Self, LbmError> {
         mesh.check(scheme.lattice)?;
         physics.check(mesh)?;
-        scheme.check(physics)?;
+        scheme.check()?;
         fluid.check(mesh)?;
         match scheme.lattice {
             LatticeKind::D2Q9 => Self::on(D2Q9, mesh, fluid, physics, scheme, start),
@@ -171,7 +171,7 @@ impl Builder<'_> {
         uniform: [f64; 3],
     ) -> Result<Lbm<T>, LbmError> {
         let &Self { mesh, fluid, physics, scheme, start } = self;
-        let (streaming, velocities) = (scheme.streaming, scheme.lattice.velocities());
+        let (streaming, velocities) = (scheme.streaming(physics)?, scheme.lattice.velocities());
         let grid =
             Grid::builder(mesh.shape).origin(mesh.position([0; 3])).spacing([mesh.spacing; 3]);
         let domain = match streaming {

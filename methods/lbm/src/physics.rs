@@ -83,14 +83,14 @@ impl Physics {
 }
 
 /// Where populations are while they stream from site to site.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// The same bits come out of both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Streaming {
     /// In two sets of columns, from one to the other: covers everything.
-    #[default]
     TwoGrids,
-    /// In one set (esoteric pull, Lehmann 2022): half of the memory, and two thirds of what is moved in a
-    /// step. Bodies turn populations back half-way, and no opening lets waves out.
+    /// In one set (esoteric pull, Lehmann 2022): half of the memory, and faster. Covers neither
+    /// interpolated walls nor non-reflecting openings, which ask for populations of other sites.
     InPlace,
 }
 
@@ -104,8 +104,8 @@ pub struct Scheme {
     pub collision: Collision,
     /// How they are turned back at bodies.
     pub wall: Wall,
-    /// Where populations are kept.
-    pub streaming: Streaming,
+    /// Where populations are kept; in place wherever that covers what is modelled if `None`.
+    pub streaming: Option<Streaming>,
     /// Smagorinsky's constant (1963) of eddies that the mesh does not hold, which have a viscosity of
     /// `(C dx)^2 |S|`; none if `None`. Between 0.1 and 0.2 usually.
     pub smagorinsky: Option<f64>,
@@ -115,20 +115,31 @@ impl Scheme {
     /// The default collision and walls on a lattice, without eddies.
     pub fn on(lattice: LatticeKind) -> Self {
         let (collision, wall) = (Collision::default(), Wall::default());
-        Self { lattice, collision, wall, streaming: Streaming::default(), smagorinsky: None }
+        Self { lattice, collision, wall, streaming: None, smagorinsky: None }
     }
 
-    pub(crate) fn check(&self, physics: &Physics) -> Result<(), LbmError> {
+    pub(crate) fn check(&self) -> Result<(), LbmError> {
         self.collision.check()?;
-        if self.streaming == Streaming::InPlace {
-            if self.wall != Wall::HalfWay && !physics.bodies.is_empty() {
-                return Err(LbmError::InPlace { what: "walls that are interpolated" });
-            }
-            let lets_out = |o: &Opening| matches!(o.condition, Condition::NonReflecting { .. });
-            if physics.openings.iter().any(lets_out) {
-                return Err(LbmError::InPlace { what: "openings that let waves out" });
-            }
-        }
         self.smagorinsky.map_or(Ok(()), |constant| positive("smagorinsky", constant))
+    }
+
+    /// Where populations are kept.
+    ///
+    /// # Errors
+    /// If they are to be in place where that does not cover what is modelled.
+    pub(crate) fn streaming(&self, physics: &Physics) -> Result<Streaming, LbmError> {
+        let lets_out = |o: &Opening| matches!(o.condition, Condition::NonReflecting { .. });
+        let beyond = if self.wall != Wall::HalfWay && !physics.bodies.is_empty() {
+            Some("interpolated walls")
+        } else if physics.openings.iter().any(lets_out) {
+            Some("non-reflecting openings")
+        } else {
+            None
+        };
+        match (self.streaming, beyond) {
+            (Some(Streaming::TwoGrids), _) | (None, Some(_)) => Ok(Streaming::TwoGrids),
+            (_, None) => Ok(Streaming::InPlace),
+            (Some(Streaming::InPlace), Some(what)) => Err(LbmError::InPlace { what }),
+        }
     }
 }

@@ -94,7 +94,7 @@ fn outcome<T: Compiled>(
         }),
         pressure: Box::new(|[x, _, z]| 0.01 * (x + z).sin()),
     };
-    let scheme = Scheme { streaming, ..scheme };
+    let scheme = Scheme { streaming: Some(streaming), ..scheme };
     let lbm = Lbm::<T>::new(mesh, &fluid, physics, &scheme, &start).unwrap();
     let mut simulation = Simulation::new(lbm.model, Settings::default()).unwrap();
     let mut bits = Vec::new();
@@ -143,7 +143,8 @@ fn in_place_takes_half_of_the_memory() {
     let memory = |streaming| {
         let (mesh, physics) = obstacles(lattice);
         let fluid = Fluid { density: 2.0, kinematic_viscosity: 0.02, largest_speed: 0.5 };
-        let scheme = Scheme { streaming, wall: Wall::HalfWay, ..Scheme::on(lattice) };
+        let scheme =
+            Scheme { streaming: Some(streaming), wall: Wall::HalfWay, ..Scheme::on(lattice) };
         let lbm = Lbm::<f64>::new(&mesh, &fluid, &physics, &scheme, &Start::default()).unwrap();
         let derived = 1 + lbm.fields.velocity.len();
         lbm.model.columns.memory() as f64 / mesh.sites() as f64 / 8.0 - derived as f64
@@ -155,20 +156,30 @@ fn in_place_takes_half_of_the_memory() {
 #[test]
 fn what_streaming_in_place_does_not_cover_is_refused() {
     let lattice = LatticeKind::D2Q9;
-    let build = |(mesh, physics): (Mesh, Physics), wall| {
+    let build_with = |streaming, (mesh, physics): (Mesh, Physics), wall| {
         let fluid = Fluid { density: 2.0, kinematic_viscosity: 0.02, largest_speed: 0.5 };
-        let scheme = Scheme { streaming: Streaming::InPlace, wall, ..Scheme::on(lattice) };
-        Lbm::<f64>::new(&mesh, &fluid, &physics, &scheme, &Start::default()).map(|_| ())
+        let scheme = Scheme { streaming, wall, ..Scheme::on(lattice) };
+        let lbm = Lbm::<f64>::new(&mesh, &fluid, &physics, &scheme, &Start::default());
+        lbm.map(|lbm| {
+            lbm.model.columns.iter().filter(|(_, c)| c.name().starts_with("in_place")).count()
+        })
     };
+    let build = |modelled, wall| build_with(Some(Streaming::InPlace), modelled, wall);
     let error = build(cavity(lattice), Wall::Interpolated).unwrap_err();
-    assert_eq!(error, LbmError::InPlace { what: "walls that are interpolated" });
+    assert_eq!(error, LbmError::InPlace { what: "interpolated walls" });
     assert!(error.to_string().contains("half-way"));
-    assert_eq!(build(cavity(lattice), Wall::HalfWay), Ok(()));
+    assert_eq!(build(cavity(lattice), Wall::HalfWay), Ok(9));
+    // Nobody is refused who did not ask for it.
+    assert_eq!(build_with(None, cavity(lattice), Wall::Interpolated), Ok(0));
+    assert_eq!(build_with(None, cavity(lattice), Wall::HalfWay), Ok(9));
     let (mesh, mut physics) = channel(lattice, 0);
     physics.openings[1].condition = Condition::NonReflecting { pressure: 0.0, relaxation: 0.0 };
-    let error = build((mesh, physics), Wall::HalfWay).unwrap_err();
-    assert_eq!(error, LbmError::InPlace { what: "openings that let waves out" });
+    let channel = (mesh, physics);
+    let error = build(channel.clone(), Wall::HalfWay).unwrap_err();
+    assert_eq!(error, LbmError::InPlace { what: "non-reflecting openings" });
+    assert_eq!(build_with(None, channel, Wall::HalfWay), Ok(0));
     // Without bodies there are no walls.
     let open = (self::mesh(lattice, [true; 3]), Physics::default());
-    assert_eq!(build(open, Wall::Interpolated), Ok(()));
+    assert_eq!(build(open.clone(), Wall::Interpolated), Ok(9));
+    assert_eq!(build_with(Some(Streaming::TwoGrids), open, Wall::Interpolated), Ok(0));
 }

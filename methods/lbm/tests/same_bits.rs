@@ -11,7 +11,7 @@ use finegrain_lbm::{
 
 /// A wall that slides, a body across a periodic end, a force that varies, in place.
 fn in_place<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
-    let (streaming, wall) = (Streaming::InPlace, Wall::HalfWay);
+    let (streaming, wall) = (Some(Streaming::InPlace), Wall::HalfWay);
     between_walls(Scheme { collision, streaming, wall, ..Scheme::on(lattice) })
 }
 
