@@ -7,7 +7,7 @@ mod samples;
 
 use std::f64::consts::TAU;
 
-use finegrain::framework::pack::Targets;
+use finegrain::framework::pack::{Bypass, Pack, Targets, prefetch};
 use finegrain::framework::space::Grid;
 use finegrain::framework::*;
 use finegrain::lbm::{
@@ -20,6 +20,8 @@ use samples::{Case, sample};
 const STEPS: u64 = 10;
 /// Velocities of D3Q19.
 const COLUMNS: usize = 19;
+/// Packs for which memory is asked ahead, as the method does.
+const AHEAD: usize = 6;
 
 /// How much is measured.
 #[derive(Clone, Copy)]
@@ -195,20 +197,37 @@ impl<T: Real> RateStage<Grid> for Copy<T> {
         let now = self.now.map(|now| near.rows(now));
         let mut next = self.next.map(|next| rates.rows(next));
         for (j, k) in near.sub_domain().rows() {
-            let from = now.each_ref().map(|now| lines(now.row(j as isize, k as isize)));
-            let to = next.each_mut().map(|next| bytemuck::cast_slice_mut(next.row(j, k)));
-            let mut to = Targets::new(to, bypass);
-            for i in 0..from[0].len() {
-                to.write(i, from.map(|from| from[i]));
-            }
+            let from = now.each_ref().map(|now| now.row(j as isize, k as isize));
+            let to = next.each_mut().map(|next| next.row(j, k));
+            pulp::Arch::new().dispatch(CopyRow { from, to, bypass });
         }
         Ok(())
     }
 }
 
-/// A row in lines of the cache.
-fn lines<T: Real>(row: &[T]) -> &[[u8; 64]] {
-    bytemuck::cast_slice(row)
+struct CopyRow<'a, T> {
+    from: [&'a [T]; COLUMNS],
+    to: [&'a mut [T]; COLUMNS],
+    bypass: Option<Bypass<'a>>,
+}
+
+impl<T: Real> pulp::WithSimd for CopyRow<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let from = self.from.map(|from| T::Pack::<S>::packs(simd, from));
+        let to = self.to.map(|to| T::Pack::<S>::packs_mut(simd, to));
+        let mut to = Targets::new(to, self.bypass);
+        for i in 0..from[0].len() {
+            let mut values = [from[0][i]; COLUMNS];
+            for q in 0..COLUMNS {
+                prefetch(from[q], i + AHEAD);
+                values[q] = from[q][i];
+            }
+            to.write(i, values);
+        }
+    }
 }
 
 /// Updates columns in place.
@@ -222,10 +241,28 @@ impl<T: Real> UpdateStage<Grid> for Update<T> {
     fn update(&self, own: &mut Own<'_, Grid>, _: &mut (), _: &Moment) -> Result<(), Fault> {
         let mut now = self.now.map(|now| own.rows_mut(now));
         for (j, k) in own.sub_domain().rows() {
-            for now in &mut now {
-                now.row(j, k).iter_mut().for_each(|value| *value += T::one());
-            }
+            let row = now.each_mut().map(|now| now.row(j, k));
+            pulp::Arch::new().dispatch(UpdateRow { row });
         }
         Ok(())
+    }
+}
+
+struct UpdateRow<'a, T> {
+    row: [&'a mut [T]; COLUMNS],
+}
+
+impl<T: Real> pulp::WithSimd for UpdateRow<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let row = self.row.map(|row| T::Pack::<S>::packs_mut(simd, row));
+        for i in 0..row[0].len() {
+            for q in 0..COLUMNS {
+                prefetch(row[q], i + AHEAD);
+                row[q][i] = (T::Pack::<S>::of(simd, row[q][i]) + T::one()).vector();
+            }
+        }
     }
 }
