@@ -1,9 +1,12 @@
 //! Divided space: how many sub-domains there are, which points each owns, and which are
 //! neighbours.
 
+mod shift;
+
 use crate::columns::Columns;
 use crate::stage::Fault;
 use crate::view::Near;
+use shift::Shift;
 
 /// A half-open range of points that one sub-domain owns: `start..end` of every column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -149,6 +152,18 @@ pub enum PartitionError {
         /// Who is listed.
         b: usize,
     },
+    /// By a shift, somebody owns points of a sub-domain that is no neighbour.
+    #[error(
+        "by a shift sub-domain {id} owns points {span:?}, of which some are usually sub-domain {owner}'s, which is not its neighbour"
+    )]
+    Far {
+        /// What it owns.
+        span: Span,
+        /// Who owns it.
+        id: usize,
+        /// Who owns some of it without the shift.
+        owner: usize,
+    },
 }
 
 /// Which points each sub-domain owns and which sub-domains are neighbours.
@@ -164,6 +179,7 @@ pub struct Partition {
     span_start: Vec<u32>,
     neighbours: Vec<u32>,
     neighbour_start: Vec<u32>,
+    shifts: Vec<Shift>,
     sealed: bool,
     by_start: Vec<Span>,
 }
@@ -186,6 +202,7 @@ impl Partition {
         self.span_start.push(0);
         self.neighbour_start.clear();
         self.neighbour_start.push(0);
+        self.shifts.clear();
         self.sealed = false;
     }
 
@@ -202,31 +219,33 @@ impl Partition {
         self.sealed = false;
     }
 
-    /// Checks that the sub-domains are disjoint, own every point and are mutual neighbours.
+    /// Once all sub-domains are there, adds another way of owning points: in columns that a stage
+    /// moves by it ([`crate::UpdateStage::shifts`]), sub-domain `id` owns `spans(id)` instead. Returns
+    /// its number.
+    pub fn push_shift<S: IntoIterator<Item = Span>>(
+        &mut self,
+        spans: impl Fn(usize) -> S,
+    ) -> usize {
+        self.shifts.push(Shift::new(self.len(), spans));
+        self.sealed = false;
+        self.shifts.len() - 1
+    }
+
+    /// The points that sub-domain `id` owns by shift number `shift`.
+    ///
+    /// # Panics
+    /// If there is no such shift.
+    pub fn shifted(&self, shift: usize, id: usize) -> &[Span] {
+        self.shifts[shift].spans(id)
+    }
+
+    /// Checks that the sub-domains are disjoint, own every point and are mutual neighbours, and that
+    /// by every shift each point has one owner, too: its usual one or a neighbour of that.
     ///
     /// # Errors
     /// The first violation found.
     pub fn seal(&mut self) -> Result<(), PartitionError> {
-        self.by_start.clear();
-        self.by_start.extend(self.spans.iter().filter(|s| s.start != s.end));
-        self.by_start.sort_unstable_by_key(|s| s.start);
-        let mut owned = 0;
-        let mut last = Span { start: 0, end: 0 };
-        // An empty span may lie anywhere but outside: its address is computed all the same.
-        let outside = self.spans.iter().find(|s| s.start.max(s.end) > self.points);
-        if let Some(&span) = outside {
-            return Err(PartitionError::Outside { span, points: self.points });
-        }
-        for &span in &self.by_start {
-            if span.start < last.end || span.end < span.start {
-                return Err(PartitionError::Overlap { first: last, second: span });
-            }
-            owned += span.len();
-            last = span;
-        }
-        if owned != self.points {
-            return Err(PartitionError::Unowned { owned, points: self.points });
-        }
+        cover(&self.spans, self.points, &mut self.by_start)?;
         for a in 0..self.len() {
             let mut last = None;
             for &b in self.neighbours(a) {
@@ -239,6 +258,9 @@ impl Partition {
                 }
                 last = Some(b);
             }
+        }
+        for shift in &self.shifts {
+            shift.seal(self)?;
         }
         self.sealed = true;
         Ok(())
@@ -301,7 +323,30 @@ impl Partition {
                 + self.neighbours.capacity()
                 + self.neighbour_start.capacity())
                 * 4
+            + self.shifts.iter().map(Shift::memory).sum::<usize>()
     }
+}
+
+/// Checks that spans are disjoint and cover all points; puts those that are not empty in order.
+fn cover(spans: &[Span], points: usize, by_start: &mut Vec<Span>) -> Result<(), PartitionError> {
+    by_start.clear();
+    by_start.extend(spans.iter().filter(|s| s.start != s.end));
+    by_start.sort_unstable_by_key(|s| s.start);
+    let mut owned = 0;
+    let mut last = Span { start: 0, end: 0 };
+    // An empty span may lie anywhere but outside: its address is computed all the same.
+    let outside = spans.iter().find(|s| s.start.max(s.end) > points);
+    if let Some(&span) = outside {
+        return Err(PartitionError::Outside { span, points });
+    }
+    for &span in &*by_start {
+        if span.start < last.end || span.end < span.start {
+            return Err(PartitionError::Overlap { first: last, second: span });
+        }
+        owned += span.len();
+        last = span;
+    }
+    if owned == points { Ok(()) } else { Err(PartitionError::Unowned { owned, points }) }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use std::sync::{Mutex, PoisonError, TryLockError};
 use crate::clock::Clock;
 use crate::columns::{ColumnId, Columns, Role};
 use crate::domain::{Domain, Partition};
+use crate::pack::Fence;
 use crate::stage::Fault;
 use crate::step::{Entry, Step, Stretch};
 use crate::trace::{Event, Trace};
@@ -151,6 +152,7 @@ pub(crate) struct Leg<'a, D: Domain> {
     clock: &'a Clock,
     stint: Stint,
     watch: Watch<'a>,
+    past_caches: bool,
     failed: AtomicBool,
     failure: Mutex<Option<Failure>>,
 }
@@ -186,9 +188,16 @@ impl<'a, D: Domain> Leg<'a, D> {
             clock,
             stint,
             watch,
+            past_caches: false,
             failed: AtomicBool::new(false),
             failure: Mutex::new(None),
         }
+    }
+
+    /// Lets rate stages write past the caches, or not.
+    pub fn past_caches(mut self, pays: bool) -> Self {
+        self.past_caches = pays;
+        self
     }
 
     /// Ends the leg after the schedule has run it: the columns' memory is brought in the order
@@ -216,7 +225,18 @@ impl<'a, D: Domain> Leg<'a, D> {
         let key = base ^ parity ^ self.step.swapped_before(entry);
         let tables = &self.desk.tables;
         let table = tables.iter().find(|(k, _)| *k == key).expect("all keys are laid out");
-        Place { domain: self.domain, partition: self.partition, id, slots: &table.1 }
+        let shifts = match entry {
+            Some(entry) => self.step.stages[self.step.entries[entry].stage].shifts(),
+            None => &[],
+        };
+        Place {
+            domain: self.domain,
+            partition: self.partition,
+            id,
+            slots: &table.1,
+            shifts,
+            displaced: self.step.displaced,
+        }
     }
 
     /// Hands `task` the worker's scratch, one for each stage.
@@ -267,11 +287,12 @@ impl<'a, D: Domain> Leg<'a, D> {
         let stage = &self.step.stages[stage];
         if stage.is_rate() {
             let writes = stage.writes();
+            let fence = Fence::new(self.past_caches);
             // SAFETY: the schedule runs this part of this sub-domain once, on this worker, and
             // whatever runs beside it within sight is the same part (module `view`); the leg's
             // exclusive borrow of the columns keeps their memory in place.
             let (near, mut rates) =
-                unsafe { (Near::new(place, writes), Rates::new(place, writes)) };
+                unsafe { (Near::new(place, writes), Rates::new(place, writes, fence.bypass())) };
             self.domain.check(&near)?;
             stage.run_rate(&near, &mut rates, scratch, &moment)
         } else {
@@ -284,8 +305,10 @@ impl<'a, D: Domain> Leg<'a, D> {
     fn check_finite(&self, step: u64, part: usize, sub_domain: usize) -> Result<(), Cause> {
         let next = self.step.part_start[part + 1];
         let next = Some(next).filter(|&next| next < self.step.entries.len());
-        // SAFETY: as an update part; the workers' last part has just been run here.
-        let own = unsafe { Own::new(self.place(step, next, sub_domain)) };
+        let place = self.place(step, next, sub_domain);
+        // SAFETY: as an update part; the workers' last part has just been run here, and what it owned is
+        // looked at.
+        let own = unsafe { Own::new(Place { shifts: &self.step.last_shifts, ..place }) };
         match self.desk.checked.iter().find(|&&id| !own.is_finite(id)) {
             Some(&id) => {
                 Err(Cause::NotFinite { column: self.columns.column(id).name().to_owned() })

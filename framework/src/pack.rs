@@ -5,6 +5,13 @@
 //! [`pulp::Arch::dispatch`] finds. Every operation is exactly rounded and none is fused, so a number
 //! comes out with the same bits in whatever place of whatever pack it is computed.
 
+mod bypass;
+mod prefetch;
+
+pub(crate) use bypass::Fence;
+pub use bypass::{Bypass, Targets};
+pub use prefetch::prefetch;
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use pulp::Simd;
@@ -60,7 +67,7 @@ pub trait Pack:
     fn packs_mut(simd: Self::Simd, to: &mut [Self::Scalar]) -> &mut [Self::Vector];
 
     /// What memory holds of a pack.
-    type Vector: Copy;
+    type Vector: bytemuck::Pod;
 
     /// A pack from memory.
     fn of(simd: Self::Simd, vector: Self::Vector) -> Self;

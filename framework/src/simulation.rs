@@ -259,7 +259,11 @@ impl<D: Domain> Simulation<D> {
         let Model { domain, columns, plan, .. } = &mut self.model;
         let (executor, partials, clock) = (&mut self.executor, &mut self.partials, &self.clock);
         let watch = Watch { check_every: self.settings.check_every, trace: self.trace.as_ref() };
-        (Engine { domain, columns, executor, partials, clock }, plan, &mut self.desk, watch)
+        // Nothing of what a sweep writes is still in the caches when the next one reads it.
+        let is_swept = executor.schedule() != Schedule::PeerToPeer;
+        let past_caches = is_swept && columns.memory() > 4 * cache::cache_share(1);
+        let engine = Engine { domain, columns, executor, partials, clock, past_caches };
+        (engine, plan, &mut self.desk, watch)
     }
 
     fn begin_pace(&mut self) -> Result<(), RunError> {

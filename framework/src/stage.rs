@@ -75,6 +75,13 @@ pub trait UpdateStage<D: Domain>: Send + Sync + 'static {
         short_type_name::<Self>()
     }
 
+    /// Columns of which it owns other points than usually, those by a shift of the partition
+    /// ([`crate::Partition::push_shift`]): what streams from point to point can then be advanced in place. No
+    /// other stage of the step may read such a column from neighbours. None by default.
+    fn shifts(&self) -> Vec<(ColumnId, usize)> {
+        Vec::new()
+    }
+
     /// Advances the state of one sub-domain.
     ///
     /// # Errors

@@ -27,6 +27,7 @@ trait AnyRate<D: Domain>: Send + Sync {
 /// An update stage whose scratch type is forgotten.
 trait AnyUpdate<D: Domain>: Send + Sync {
     fn name(&self) -> &str;
+    fn shifts(&self) -> Vec<(ColumnId, usize)>;
     fn scratch(&self) -> Box<dyn Any + Send>;
     fn update(
         &self,
@@ -66,6 +67,9 @@ impl<D: Domain, S: UpdateStage<D>> AnyUpdate<D> for S {
     fn name(&self) -> &str {
         UpdateStage::name(self)
     }
+    fn shifts(&self) -> Vec<(ColumnId, usize)> {
+        UpdateStage::shifts(self)
+    }
     fn scratch(&self) -> Box<dyn Any + Send> {
         Box::new(S::Scratch::default())
     }
@@ -84,7 +88,7 @@ pub struct Stage<D: Domain>(Kind<D>);
 
 enum Kind<D: Domain> {
     Rate(Arc<dyn AnyRate<D>>, ColumnSet),
-    Update(Arc<dyn AnyUpdate<D>>),
+    Update(Arc<dyn AnyUpdate<D>>, Arc<[(ColumnId, usize)]>),
     Whole(Arc<SharedWhole<D>>),
 }
 
@@ -98,7 +102,7 @@ impl<D: Domain> Clone for Stage<D> {
     fn clone(&self) -> Self {
         Self(match &self.0 {
             Kind::Rate(stage, writes) => Kind::Rate(Arc::clone(stage), *writes),
-            Kind::Update(stage) => Kind::Update(Arc::clone(stage)),
+            Kind::Update(stage, shifts) => Kind::Update(Arc::clone(stage), Arc::clone(shifts)),
             Kind::Whole(stage) => Kind::Whole(Arc::clone(stage)),
         })
     }
@@ -113,7 +117,8 @@ impl<D: Domain> Stage<D> {
 
     /// An update stage.
     pub fn update(stage: impl UpdateStage<D>) -> Self {
-        Self(Kind::Update(Arc::new(stage)))
+        let shifts = AnyUpdate::shifts(&stage).into();
+        Self(Kind::Update(Arc::new(stage), shifts))
     }
 
     /// A whole-domain stage, a linear solve say: all workers come back before it, so that there is no
@@ -127,7 +132,7 @@ impl<D: Domain> Stage<D> {
     pub fn name(&self) -> &str {
         match &self.0 {
             Kind::Rate(stage, _) => stage.name(),
-            Kind::Update(stage) => stage.name(),
+            Kind::Update(stage, _) => stage.name(),
             Kind::Whole(stage) => &stage.name,
         }
     }
@@ -135,7 +140,7 @@ impl<D: Domain> Stage<D> {
     fn is_same(&self, other: &Self) -> bool {
         match (&self.0, &other.0) {
             (Kind::Rate(a, _), Kind::Rate(b, _)) => Arc::ptr_eq(a, b),
-            (Kind::Update(a), Kind::Update(b)) => Arc::ptr_eq(a, b),
+            (Kind::Update(a, _), Kind::Update(b, _)) => Arc::ptr_eq(a, b),
             (Kind::Whole(a), Kind::Whole(b)) => Arc::ptr_eq(a, b),
             _ => false,
         }
@@ -146,7 +151,7 @@ impl<D: Domain> Stage<D> {
     }
 
     pub(crate) fn is_update(&self) -> bool {
-        matches!(self.0, Kind::Update(_))
+        matches!(self.0, Kind::Update(..))
     }
 
     pub(crate) fn is_whole(&self) -> bool {
@@ -156,14 +161,22 @@ impl<D: Domain> Stage<D> {
     pub(crate) fn writes(&self) -> ColumnSet {
         match &self.0 {
             Kind::Rate(_, writes) => *writes,
-            Kind::Update(_) | Kind::Whole(_) => ColumnSet::default(),
+            Kind::Update(..) | Kind::Whole(_) => ColumnSet::default(),
+        }
+    }
+
+    /// Columns that it owns with an offset, each with the shift.
+    pub(crate) fn shifts(&self) -> &[(ColumnId, usize)] {
+        match &self.0 {
+            Kind::Update(_, shifts) => shifts,
+            Kind::Rate(..) | Kind::Whole(_) => &[],
         }
     }
 
     pub(crate) fn scratch(&self) -> Box<dyn Any + Send> {
         match &self.0 {
             Kind::Rate(stage, _) => stage.scratch(),
-            Kind::Update(stage) => stage.scratch(),
+            Kind::Update(stage, _) => stage.scratch(),
             Kind::Whole(_) => Box::new(()),
         }
     }
@@ -190,7 +203,7 @@ impl<D: Domain> Stage<D> {
         moment: &Moment,
     ) -> Result<(), Fault> {
         match &self.0 {
-            Kind::Update(stage) => stage.update(own, scratch, moment),
+            Kind::Update(stage, _) => stage.update(own, scratch, moment),
             _ => unreachable!("parts never mix kinds"),
         }
     }
@@ -220,7 +233,7 @@ pub(crate) struct Entry {
 /// A step: parts in order, each one rate stage, update stages in a row, or a whole-domain stage.
 ///
 /// Everybody may run a part once all neighbours have finished the part before; update stages in a
-/// row need no meeting between them, so they are one part. Before and after a whole-domain stage
+/// row need no meeting between them, so they are one part, unless they own columns with an offset. Before and after a whole-domain stage
 /// all meet: it cuts the step into stretches.
 pub struct Step<D: Domain> {
     pub(crate) stages: Vec<Stage<D>>,
@@ -232,6 +245,10 @@ pub struct Step<D: Domain> {
     pub(crate) swapped: u64,
     /// What is done in one go.
     pub(crate) stretches: Vec<Stretch>,
+    /// Columns of which the memory is owned with an offset somewhere in the step.
+    pub(crate) displaced: ColumnSet,
+    /// What the workers' last part owned with an offset, by the names of columns after the step.
+    pub(crate) last_shifts: Vec<(ColumnId, usize)>,
 }
 
 /// Parts of a step that are done in one go.
@@ -254,6 +271,8 @@ impl<D: Domain> Step<D> {
                 pairs: Vec::new(),
                 swapped: 0,
                 stretches: Vec::new(),
+                displaced: ColumnSet::default(),
+                last_shifts: Vec::new(),
             },
         }
     }
@@ -296,6 +315,35 @@ impl<D: Domain> Step<D> {
         }
     }
 
+    /// Finds what is owned with an offset.
+    fn displace(&mut self) {
+        let mut by_memory: Vec<(ColumnId, usize)> = Vec::new();
+        for &(column, shift) in self.stages.iter().flat_map(Stage::shifts) {
+            for column in [Some(column), self.partner(column)].into_iter().flatten() {
+                let other = by_memory.iter().find(|(known, s)| *known == column && *s != shift);
+                assert!(other.is_none(), "column {} is owned with two offsets", column.0);
+                by_memory.push((column, shift));
+                self.displaced.insert(column);
+            }
+        }
+        let Some(part) = self.last_of_workers() else { return };
+        let last = &self.entries[self.part_start[part + 1] - 1];
+        let exchanged = last.swapped ^ self.swapped_before_part(part + 1);
+        let renamed = |column: ColumnId| {
+            let is_it = |&(a, b): &(ColumnId, ColumnId)| a == column || b == column;
+            let pair = self.pairs.iter().position(is_it).filter(|k| exchanged >> k & 1 == 1);
+            pair.and_then(|_| self.partner(column)).unwrap_or(column)
+        };
+        let shifts = self.stages[last.stage].shifts();
+        self.last_shifts = shifts.iter().map(|&(column, shift)| (renamed(column), shift)).collect();
+    }
+
+    /// The column that a column is exchanged with.
+    fn partner(&self, column: ColumnId) -> Option<ColumnId> {
+        let pair = self.pairs.iter().find(|(a, b)| *a == column || *b == column);
+        pair.map(|&(a, b)| if a == column { b } else { a })
+    }
+
     /// Whether the workers have to come back in the middle of it.
     pub(crate) fn has_whole(&self) -> bool {
         self.stages.iter().any(Stage::is_whole)
@@ -336,8 +384,9 @@ impl<D: Domain> StepBuilder<D> {
             step.stages.push(stage.clone());
             step.stages.len() - 1
         });
-        let joins_updates = stage.is_update()
-            && step.entries.last().is_some_and(|last| step.stages[last.stage].is_update());
+        let is_plain = |stage: &Stage<D>| stage.is_update() && stage.shifts().is_empty();
+        let joins_updates = is_plain(stage)
+            && step.entries.last().is_some_and(|last| is_plain(&step.stages[last.stage]));
         if !joins_updates {
             step.part_start.push(step.entries.len());
         }
@@ -367,6 +416,14 @@ impl<D: Domain> StepBuilder<D> {
         self.exchange(a.id(), b.id())
     }
 
+    /// Exchanges the memory of two state columns: what is advanced in place, each in the other's.
+    ///
+    /// # Panics
+    /// As [`StepBuilder::swap_rates`].
+    pub fn swap_states<T: crate::columns::Element>(self, a: State<T>, b: State<T>) -> Self {
+        self.exchange(a.id(), b.id())
+    }
+
     pub(crate) fn exchange(mut self, a: ColumnId, b: ColumnId) -> Self {
         assert_ne!(a, b, "a column is swapped with itself");
         let step = &mut self.step;
@@ -385,6 +442,9 @@ impl<D: Domain> StepBuilder<D> {
     }
 
     /// The step.
+    ///
+    /// # Panics
+    /// If a column, or one that it is exchanged with, is owned with two different offsets.
     pub fn build(mut self) -> Step<D> {
         let step = &mut self.step;
         for (part, &start) in step.part_start.iter().enumerate() {
@@ -397,6 +457,7 @@ impl<D: Domain> StepBuilder<D> {
             }
         }
         step.part_start.push(step.entries.len());
+        step.displace();
         self.step
     }
 }

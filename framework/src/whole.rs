@@ -55,7 +55,8 @@ impl<D: Domain> Whole<'_, D> {
         values.resize(partition.len() * N, 0.0);
         let (domain, slots) = (&*self.domain, &**slots);
         self.team.for_each_chunk(values, N, |id, values| {
-            let place = Place { domain, partition, id, slots };
+            let (shifts, displaced) = (&[][..], ColumnSet::default());
+            let place = Place { domain, partition, id, slots, shifts, displaced };
             // SAFETY: the partition is sealed and has as many points as the columns, which are
             // borrowed exclusively here; nobody writes any of them during the reduction.
             let near = unsafe { Near::new(place, ColumnSet::default()) };

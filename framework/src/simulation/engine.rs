@@ -19,6 +19,8 @@ pub(super) struct Engine<'a, D: Domain> {
     pub executor: &'a mut Executor,
     pub partials: &'a mut Partials,
     pub clock: &'a Clock,
+    /// Whether rate stages may write past the caches.
+    pub past_caches: bool,
 }
 
 impl<D: Domain> Engine<'_, D> {
@@ -62,7 +64,8 @@ impl<D: Domain> Engine<'_, D> {
         watch: Watch<'_>,
     ) -> Result<(), Failure> {
         let (first, begin) = (stint.steps.start, watch.trace.map(Trace::now));
-        let leg = Leg::new(self.domain, self.columns, step, desk, self.clock, stint, watch);
+        let leg = Leg::new(self.domain, self.columns, step, desk, self.clock, stint, watch)
+            .past_caches(self.past_caches);
         self.executor.run(&leg);
         let outcome = leg.finish();
         if let (Some(trace), Some(begin)) = (watch.trace, begin) {

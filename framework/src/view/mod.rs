@@ -10,6 +10,13 @@
 //! * In a rate part, everybody writes only columns in `writes` and reads from others only
 //!   columns that are not. In an update part, everybody touches only what it owns.
 //!
+//! * A stage may own the points of a column by a shift of the partition instead. Shifts are sealed,
+//!   too: parts are as disjoint, and whoever ever touches an element is its usual owner or a
+//!   neighbour of that one, so that the second point orders them as it orders neighbours. (If the same
+//!   memory had two shifts, owners could be two apart; a step refuses that.) Reading from a
+//!   neighbour reaches what *its* neighbours own by the shift, two apart, so memory that has a shift is
+//!   read by owners only. A stage that has shifts is a part of its own.
+//!
 //! Hence no element that is being written is visible to anybody else. What a stage author
 //! could get wrong (a column both read from neighbours and written, a span that is not a
 //! neighbour's, one column borrowed twice) is checked here and panics, which the run reports
@@ -23,8 +30,8 @@ pub use near::{Near, Reach, View};
 pub use own::{Own, Rates};
 pub use part::{Part, PartMut};
 
-use crate::columns::{ColumnId, Columns, Element, ElementKind};
-use crate::domain::Partition;
+use crate::columns::{ColumnId, ColumnSet, Columns, Element, ElementKind};
+use crate::domain::{Partition, Span};
 
 /// Address and element type of one column's memory.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +57,10 @@ pub(crate) struct Place<'a, D> {
     pub partition: &'a Partition,
     pub id: usize,
     pub slots: &'a [Slot],
+    /// What is owned with an offset, and by which shift of the partition.
+    pub shifts: &'a [(ColumnId, usize)],
+    /// What has an offset somewhere in the step.
+    pub displaced: ColumnSet,
 }
 
 impl<D> Clone for Place<'_, D> {
@@ -59,7 +70,15 @@ impl<D> Clone for Place<'_, D> {
 }
 impl<D> Copy for Place<'_, D> {}
 
-impl<D> Place<'_, D> {
+impl<'a, D> Place<'a, D> {
+    /// The points of a column that the sub-domain owns.
+    fn spans(&self, column: ColumnId) -> &'a [Span] {
+        match self.shifts.iter().find(|(id, _)| *id == column) {
+            Some(&(_, shift)) => self.partition.shifted(shift, self.id),
+            None => self.partition.spans(self.id),
+        }
+    }
+
     fn base<T: Element>(&self, id: ColumnId) -> *mut T {
         let slot = self.slots.get(id.0 as usize).filter(|slot| slot.kind == T::KIND);
         match slot {

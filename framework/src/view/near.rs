@@ -100,7 +100,8 @@ impl<'a, D: Domain> Near<'a, D> {
     /// A state column, as far as it can be seen from here.
     ///
     /// # Panics
-    /// If the handle belongs to other columns.
+    /// If the handle belongs to other columns, or the column is owned with an offset in this step
+    /// ([`crate::UpdateStage::shifts`]).
     pub fn state<T: Element>(&self, column: State<T>) -> View<'a, T> {
         self.view(column)
     }
@@ -119,6 +120,11 @@ impl<'a, D: Domain> Near<'a, D> {
         assert!(
             !self.writes.contains(column.id()),
             "column {} is written by the stage that reads it from neighbours",
+            column.id().0
+        );
+        assert!(
+            !self.place.displaced.contains(column.id()),
+            "column {} is owned with an offset in this step and so not seen by neighbours",
             column.id().0
         );
         let Place { partition, id, .. } = self.place;

@@ -4,6 +4,7 @@
 use super::{Part, PartMut, Place};
 use crate::columns::{ColumnId, ColumnSet, Element, ElementKind, Handle, Rate, State};
 use crate::domain::{Domain, Span};
+use crate::pack::Bypass;
 
 /// Which columns of one sub-domain have been borrowed, and how.
 #[derive(Debug, Default, PartialEq)]
@@ -32,14 +33,25 @@ pub struct Rates<'a, D: Domain> {
     place: Place<'a, D>,
     writes: ColumnSet,
     borrows: Borrows,
+    bypass: Option<Bypass<'a>>,
 }
 
 impl<'a, D: Domain> Rates<'a, D> {
     /// # Safety
     /// As [`Near::new`] for the partition and slots. As long as `'a` lasts, nobody else touches
     /// the columns in `writes` in the sub-domain's spans.
-    pub(crate) unsafe fn new(place: Place<'a, D>, writes: ColumnSet) -> Self {
-        Self { place, writes, borrows: Borrows::default() }
+    pub(crate) unsafe fn new(
+        place: Place<'a, D>,
+        writes: ColumnSet,
+        bypass: Option<Bypass<'a>>,
+    ) -> Self {
+        Self { place, writes, borrows: Borrows::default(), bypass }
+    }
+
+    /// Leave to write past the caches; `None` unless all columns are far larger than these and
+    /// the whole domain is stepped before anybody comes back to what is written here.
+    pub fn bypass(&self) -> Option<Bypass<'a>> {
+        self.bypass
     }
 
     /// The sub-domain's part of a rate column; each column can be had once per call.
@@ -53,7 +65,7 @@ impl<'a, D: Domain> Rates<'a, D> {
             column.id().0
         );
         self.borrows.claim(column.id());
-        let spans = self.place.partition.spans(self.place.id);
+        let spans = self.place.spans(column.id());
         // SAFETY: the spans are the sub-domain's own; `Rates::new` promises that nobody else touches
         // the column there, and `claim` that it is had only once.
         unsafe { PartMut::new(self.place.base(column.id()), spans) }
@@ -99,9 +111,14 @@ impl<'a, D: Domain> Own<'a, D> {
         self.place.id
     }
 
-    /// The points it owns.
+    /// The points it owns, but in columns with an offset.
     pub fn spans(&self) -> &'a [Span] {
         self.place.partition.spans(self.place.id)
+    }
+
+    /// Whether it owns other points of a column.
+    pub(crate) fn is_shifted(&self, id: ColumnId) -> bool {
+        self.place.shifts.iter().any(|(column, _)| *column == id)
     }
 
     /// Own rates.
@@ -137,14 +154,14 @@ impl<'a, D: Domain> Own<'a, D> {
         self.borrows.share(id);
         // SAFETY: the spans are the sub-domain's own; `Own::new` promises that nobody else touches
         // them, and `share` that the column is not borrowed for writing.
-        unsafe { Part::new(self.place.base(id), self.spans()) }
+        unsafe { Part::new(self.place.base(id), self.place.spans(id)) }
     }
 
     /// Own part of any column, to be written; panics as [`Own::state_mut`].
     pub(crate) fn part_mut<T: Element>(&mut self, id: ColumnId) -> PartMut<'a, T> {
         self.borrows.claim(id);
         // SAFETY: as in `part`, with `claim` for the only borrow of the column.
-        unsafe { PartMut::new(self.place.base(id), self.spans()) }
+        unsafe { PartMut::new(self.place.base(id), self.place.spans(id)) }
     }
 
     /// Element type of a column.
@@ -169,9 +186,9 @@ impl<'a, D: Domain> Own<'a, D> {
         ) -> bool {
             assert!(!own.borrows.exclusive.contains(id), "column {} is being written", id.0);
             // SAFETY: as in `Own::part`; what is read here does not outlive this borrow of `own`.
-            let part = unsafe { Part::new(own.place.base::<T>(id), own.spans()) };
+            let part = unsafe { Part::new(own.place.base::<T>(id), own.place.spans(id)) };
             // x * 0 is 0 for finite x and NaN otherwise; eight sums, so that it vectorises.
-            (0..own.spans().len()).all(|k| {
+            (0..own.place.spans(id).len()).all(|k| {
                 let values = part.span(k);
                 let (chunks, rest) = values.as_chunks::<8>();
                 let mut sums = [T::zero(); 8];

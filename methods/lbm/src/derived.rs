@@ -6,7 +6,9 @@ use finegrain_framework::{
 };
 
 use crate::acceleration::Acceleration;
+use crate::around::Around;
 use crate::lattice::SOUND_SPEED_SQUARED;
+use crate::physics::Streaming;
 
 /// From the populations after the collision: `p = c_s^2 (rho - 1)` and, because the collision has
 /// added the whole force where the velocity has half of it,
@@ -14,6 +16,7 @@ use crate::lattice::SOUND_SPEED_SQUARED;
 pub(crate) struct Derived<T> {
     pub populations: Vec<State<T>>,
     pub velocities: &'static [[i32; 3]],
+    pub streaming: Streaming,
     pub solid: State<u8>,
     pub pressure: Rate<T>,
     pub velocity: Vec<Rate<T>>,
@@ -25,8 +28,8 @@ pub(crate) struct Derived<T> {
 }
 
 impl<T: Real> RateStage<Grid> for Derived<T> {
-    /// Density beyond one and momentum along a row.
-    type Scratch = [Vec<T>; 4];
+    /// Density beyond one and momentum along a row, and what one population adds.
+    type Scratch = ([Vec<T>; 4], Vec<T>);
 
     fn name(&self) -> &str {
         "lbm pressure and velocity"
@@ -41,11 +44,12 @@ impl<T: Real> RateStage<Grid> for Derived<T> {
         &self,
         near: &Near<'_, Grid>,
         rates: &mut Rates<'_, Grid>,
-        sums: &mut [Vec<T>; 4],
+        (sums, leaving): &mut ([Vec<T>; 4], Vec<T>),
         moment: &Moment,
     ) -> Result<(), Fault> {
         let nx = near.domain().shape()[0];
-        let populations: Vec<_> = self.populations.iter().map(|&f| near.rows(f)).collect();
+        let views: Vec<_> = self.populations.iter().map(|&f| near.state(f)).collect();
+        leaving.resize(nx, T::zero());
         let solid = near.rows(self.solid);
         let mut pressure = rates.rows(self.pressure);
         let mut velocity: Vec<_> = self.velocity.iter().map(|&v| rates.rows(v)).collect();
@@ -54,15 +58,16 @@ impl<T: Real> RateStage<Grid> for Derived<T> {
                 sum.clear();
                 sum.resize(nx, T::zero());
             }
-            for (f, c) in populations.iter().zip(self.velocities) {
-                let f = f.row(j as isize, k as isize);
+            let around = Around::new(near, &views, self.velocities, self.streaming, (j, k));
+            for (q, c) in self.velocities.iter().enumerate() {
+                around.leaving(q, leaving);
                 let [excess, momentum @ ..] = &mut *sums;
-                for (sum, &f) in excess.iter_mut().zip(f) {
+                for (sum, &f) in excess.iter_mut().zip(&*leaving) {
                     *sum += f;
                 }
                 for (momentum, &c) in momentum.iter_mut().zip(c).filter(|(_, c)| **c != 0) {
                     let c = T::of(f64::from(c));
-                    for (sum, &f) in momentum.iter_mut().zip(f) {
+                    for (sum, &f) in momentum.iter_mut().zip(&*leaving) {
                         *sum += c * f;
                     }
                 }

@@ -95,6 +95,15 @@ pub enum LbmError {
         /// A site on the plane of the opening.
         position: [f64; 3],
     },
+    /// Streaming in place does not cover it.
+    #[error(
+        "streaming in place does not cover {what}: ask for two grids, or for half-way walls and openings \
+         with a velocity or a pressure"
+    )]
+    InPlace {
+        /// What.
+        what: &'static str,
+    },
     /// Nothing is left for the fluid.
     #[error("bodies fill the whole mesh")]
     Full,

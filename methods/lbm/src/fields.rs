@@ -3,13 +3,15 @@
 use finegrain_framework::{Columns, Rate, Real, State};
 
 use crate::lattice::LatticeKind;
+use crate::physics::Streaming;
 
 /// Columns of a model. A plane has no `velocity_z`.
 #[derive(Clone, Debug)]
 pub struct Fields<T> {
-    /// Populations after the collision, less the weights, in lattice units: `population_0` and so on.
+    /// Populations after the collision, less the weights, in lattice units: `population_0` and so on. In
+    /// place, `in_place_0` and so on: odd ones one site ahead.
     pub populations: Vec<State<T>>,
-    /// The populations of the next step.
+    /// The populations of the next step; none in place.
     pub(crate) next: Vec<Rate<T>>,
     /// Number of the body that a site is in, from 1; 0 in the fluid.
     pub solid: State<u8>,
@@ -21,11 +23,19 @@ pub struct Fields<T> {
 
 impl<T: Real> Fields<T> {
     /// Declares them.
-    pub(crate) fn declare(columns: &mut Columns, lattice: LatticeKind) -> Self {
+    pub(crate) fn declare(
+        columns: &mut Columns,
+        lattice: LatticeKind,
+        streaming: Streaming,
+    ) -> Self {
         let all = 0..lattice.velocities().len();
+        let (name, next) = match streaming {
+            Streaming::TwoGrids => ("population", all.clone()),
+            Streaming::InPlace => ("in_place", 0..0),
+        };
         Self {
-            populations: all.clone().map(|q| columns.state(&format!("population_{q}"))).collect(),
-            next: all.map(|q| columns.rate(&format!("next_{q}"))).collect(),
+            populations: all.map(|q| columns.state(&format!("{name}_{q}"))).collect(),
+            next: next.map(|q| columns.rate(&format!("next_{q}"))).collect(),
             solid: columns.state("solid"),
             pressure: columns.rate("pressure"),
             velocity: ["velocity_x", "velocity_y", "velocity_z"][..lattice.dims()]

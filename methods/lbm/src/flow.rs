@@ -1,5 +1,4 @@
-//! Density, velocity and force of a site, from its populations, and the equilibrium that belongs to
-//! them.
+//! Density, velocity and stress of a site, from its populations.
 //!
 //! Populations are stored as what they have beyond the weights, `f_q - w_q`, so that small numbers
 //! stay accurate: the density is one plus their sum.
@@ -9,80 +8,6 @@ use finegrain_framework::pack::Pack;
 use num_traits::{One, Zero};
 
 use crate::lattice::{Lattice, SOUND_SPEED_SQUARED};
-
-/// A pack of sites as the collision sees them, in lattice units.
-///
-/// What is asked of velocity `q` holds for the first of a pair of opposite velocities, or for rest:
-/// even parts are those of both, odd parts change sign.
-#[derive(Clone, Copy)]
-pub(crate) struct Flow<V, const Q: usize> {
-    /// Density less one.
-    excess: V,
-    /// Density.
-    density: V,
-    /// `c . u`, with the velocity of the middle of the collision: it has half of the force (Guo, Zheng
-    /// & Shi 2002, eq. 6b).
-    velocity_along: [V; Q],
-    /// `c . a` of the acceleration by the body force.
-    acceleration_along: [V; Q],
-    /// `u . u`.
-    squared_speed: V,
-    /// `u . a`.
-    work: V,
-}
-
-impl<V: Pack, const Q: usize> Flow<V, Q> {
-    /// From the populations before the collision.
-    #[inline(always)]
-    pub fn new<L: Lattice<Q>>(f: &[V; Q], acceleration: &[V; 3]) -> Self {
-        let (excess, momentum) = moments::<L, V, Q>(f);
-        let density = excess + V::Scalar::one();
-        let per_density = excess.splat_like(V::Scalar::one()) / density;
-        let mut velocity = momentum;
-        for a in 0..L::DIMS {
-            velocity[a] = momentum[a] * per_density + acceleration[a] * V::Scalar::of(0.5);
-        }
-        Self {
-            excess,
-            density,
-            velocity_along: project::<L, V, Q>(&velocity),
-            acceleration_along: project::<L, V, Q>(acceleration),
-            squared_speed: product::<L, V, Q>(&velocity, &velocity),
-            work: product::<L, V, Q>(&velocity, acceleration),
-        }
-    }
-
-    /// Half of the sum of the equilibria of velocity `q` and its opposite, less the weight (Qian et
-    /// al. 1992, eq. 3).
-    #[inline(always)]
-    pub fn even_equilibrium<L: Lattice<Q>>(&self, q: usize) -> V {
-        let along = self.velocity_along[q];
-        let quadratic =
-            along * along * V::Scalar::of(4.5) + self.squared_speed * V::Scalar::of(-1.5);
-        (self.excess + self.density * quadratic) * V::Scalar::of(L::WEIGHTS[q])
-    }
-
-    /// Half of the difference of the equilibria of velocity `q` and its opposite.
-    #[inline(always)]
-    pub fn odd_equilibrium<L: Lattice<Q>>(&self, q: usize) -> V {
-        self.density * self.velocity_along[q] * V::Scalar::of(3.0 * L::WEIGHTS[q])
-    }
-
-    /// Even part of the source by which the force acts, before the factor of the relaxation (Guo,
-    /// Zheng & Shi 2002, eq. 20).
-    #[inline(always)]
-    pub fn even_source<L: Lattice<Q>>(&self, q: usize) -> V {
-        let along = self.velocity_along[q] * self.acceleration_along[q];
-        let sum = along * V::Scalar::of(9.0) + self.work * V::Scalar::of(-3.0);
-        self.density * sum * V::Scalar::of(L::WEIGHTS[q])
-    }
-
-    /// Odd part of the source.
-    #[inline(always)]
-    pub fn odd_source<L: Lattice<Q>>(&self, q: usize) -> V {
-        self.density * self.acceleration_along[q] * V::Scalar::of(3.0 * L::WEIGHTS[q])
-    }
-}
 
 /// Density less one, and momentum over density: the velocity before the collision, with nothing of the
 /// force of the step.
@@ -111,7 +36,7 @@ pub(crate) fn accelerated<L: Lattice<Q>, V: Pack, const Q: usize>(
 }
 
 /// Stress beyond equilibrium of populations before the collision, `sum (c_a c_b - delta_ab / 3) f -
-/// rho v_a v_b`, for `a` up to `b`. With `v` as from [`velocity`] it is free of the force up to the
+/// rho v_a v_b`, where `excess` is their sum. With `v` as from [`velocity`] it is free of the force up to the
 /// square of the acceleration.
 #[inline(always)]
 pub(crate) fn stress<L: Lattice<Q>, V: Pack, const Q: usize>(
@@ -120,30 +45,54 @@ pub(crate) fn stress<L: Lattice<Q>, V: Pack, const Q: usize>(
     v: &[V; 3],
 ) -> [[V; 3]; 3] {
     let mut stress = [[excess.splat_like(V::Scalar::zero()); 3]; 3];
-    for q in 0..Q {
-        let c = L::VELOCITIES[q];
-        for a in 0..L::DIMS {
-            let diagonal = f64::from(c[a] * c[a]) - SOUND_SPEED_SQUARED;
-            stress[a][a] = stress[a][a] + f[q] * V::Scalar::of(diagonal);
-            for b in a + 1..L::DIMS {
-                match c[a] * c[b] {
-                    1 => stress[a][b] = stress[a][b] + f[q],
-                    -1 => stress[a][b] = stress[a][b] - f[q],
-                    _ => {}
-                }
-            }
-        }
+    let mut even = *f;
+    for n in 0..Q / 2 {
+        even[2 * n + 1] = f[2 * n + 1] + f[2 * n + 2];
+    }
+    stress[0][0] = second::<L, V, Q, 0, 0>(&even);
+    stress[0][1] = second::<L, V, Q, 0, 1>(&even);
+    stress[1][1] = second::<L, V, Q, 1, 1>(&even);
+    if L::DIMS == 3 {
+        stress[0][2] = second::<L, V, Q, 0, 2>(&even);
+        stress[1][2] = second::<L, V, Q, 1, 2>(&even);
+        stress[2][2] = second::<L, V, Q, 2, 2>(&even);
     }
     let density = excess + V::Scalar::one();
     for a in 0..L::DIMS {
         for b in a..L::DIMS {
             stress[a][b] = stress[a][b] - density * v[a] * v[b];
         }
+        stress[a][a] = stress[a][a] + excess * V::Scalar::of(-SOUND_SPEED_SQUARED);
+    }
+    for a in 0..L::DIMS {
+        for b in 0..a {
+            stress[a][b] = stress[b][a];
+        }
     }
     stress
 }
 
-/// The stress without its trace, all of it below the diagonal, too.
+/// `sum c_A c_B f`, from what pairs of opposite populations sum up to, which is with the first of each.
+///
+/// Directions are known to the compiler, here and elsewhere, so that a loop over velocities has a short
+/// body: it is unrolled then, and what it asks of velocities costs nothing.
+#[inline(always)]
+fn second<L: Lattice<Q>, V: Pack, const Q: usize, const A: usize, const B: usize>(
+    even: &[V; Q],
+) -> V {
+    let mut sum = even[0].splat_like(V::Scalar::zero());
+    for n in 0..Q / 2 {
+        let q = 2 * n + 1;
+        match L::VELOCITIES[q][A] * L::VELOCITIES[q][B] {
+            1 => sum = sum + even[q],
+            -1 => sum = sum - even[q],
+            _ => {}
+        }
+    }
+    sum
+}
+
+/// The stress without its trace.
 #[inline(always)]
 pub(crate) fn deviator<L: Lattice<Q>, V: Pack, const Q: usize>(
     mut stress: [[V; 3]; 3],
@@ -154,8 +103,19 @@ pub(crate) fn deviator<L: Lattice<Q>, V: Pack, const Q: usize>(
     }
     for a in 0..L::DIMS {
         stress[a][a] = stress[a][a] - trace * V::Scalar::of(1.0 / L::DIMS as f64);
-        for b in 0..a {
-            stress[a][b] = stress[b][a];
+    }
+    stress
+}
+
+/// The stress times a number.
+#[inline(always)]
+pub(crate) fn scaled<L: Lattice<Q>, V: Pack, const Q: usize>(
+    mut stress: [[V; 3]; 3],
+    by: V,
+) -> [[V; 3]; 3] {
+    for a in 0..L::DIMS {
+        for b in 0..L::DIMS {
+            stress[a][b] = stress[a][b] * by;
         }
     }
     stress
@@ -183,11 +143,8 @@ pub(crate) fn moments<L: Lattice<Q>, V: Pack, const Q: usize>(f: &[V; Q]) -> (V,
 }
 
 /// `c . v` of rest and of the first of each pair of velocities.
-///
-/// Loops over velocities have short bodies where they ask for a velocity's components: the compiler
-/// unrolls them then, and the components cost nothing.
 #[inline(always)]
-fn project<L: Lattice<Q>, V: Pack, const Q: usize>(v: &[V; 3]) -> [V; Q] {
+pub(crate) fn project<L: Lattice<Q>, V: Pack, const Q: usize>(v: &[V; 3]) -> [V; Q] {
     let mut along = [v[0].splat_like(V::Scalar::zero()); Q];
     for a in 0..L::DIMS {
         for n in 0..Q / 2 {
@@ -204,7 +161,7 @@ fn project<L: Lattice<Q>, V: Pack, const Q: usize>(v: &[V; 3]) -> [V; Q] {
 
 /// `u . v`.
 #[inline(always)]
-fn product<L: Lattice<Q>, V: Pack, const Q: usize>(u: &[V; 3], v: &[V; 3]) -> V {
+pub(crate) fn product<L: Lattice<Q>, V: Pack, const Q: usize>(u: &[V; 3], v: &[V; 3]) -> V {
     let mut sum = u[0] * v[0];
     for a in 1..L::DIMS {
         sum = sum + u[a] * v[a];

@@ -40,16 +40,17 @@ pub(crate) const fn exists<const Q: usize>(code: usize) -> bool {
     Q != 19 || x == 0 || y == 0 || z == 0
 }
 
-/// `u_x^i u_y^j u_z^k`.
+/// Lines of three moments, along one direction, on a lattice of `dims` directions.
 #[inline(always)]
-fn product<V: Pack>(u: &[V; 3], powers: [usize; 3]) -> V {
-    let mut product = u[0].splat_like(V::Scalar::one());
-    for a in 0..3 {
-        for _ in 0..powers[a] {
-            product = product * u[a];
-        }
-    }
-    product
+const fn lines(dims: usize) -> usize {
+    3usize.pow(dims as u32 - 1)
+}
+
+/// Numbers of the moments of line `n` along direction `A`, of order 0, 1 and 2 in it.
+#[inline(always)]
+const fn line<const A: usize>(n: usize) -> [usize; 3] {
+    let code = n / POWER[A] * 3 * POWER[A] + n % POWER[A];
+    [code, code + POWER[A], code + 2 * POWER[A]]
 }
 
 /// Coefficients of the equilibrium, `rho u_x^i u_y^j u_z^k`: to all orders that the lattice holds.
@@ -59,63 +60,16 @@ pub(crate) fn equilibrium<L: Lattice<Q>, V: Pack, const Q: usize>(
     u: &[V; 3],
 ) -> [V; 27] {
     let density = excess + V::Scalar::one();
-    let mut coefficients = [excess; 27];
-    for code in 1..count(L::DIMS) {
-        coefficients[code] = density * product(u, powers(code));
-    }
-    coefficients
-}
-
-/// What moments of second order that are seen from a frame moving with `u` give to a moment of higher
-/// order seen from rest: over all pairs of its indices, that of the pair times the velocities of the
-/// others (Malaspinas 2015, eq. 14, summed up).
-#[inline(always)]
-pub(crate) fn carried<L: Lattice<Q>, V: Pack, const Q: usize>(
-    second: &[[V; 3]; 3],
-    u: &[V; 3],
-    code: usize,
-) -> V {
-    let powers = powers(code);
-    let mut sum = None;
+    let mut coefficients = [density; 27];
     for a in 0..L::DIMS {
-        for b in a..L::DIMS {
-            let pairs = if a == b {
-                powers[a] * powers[a].saturating_sub(1) / 2
-            } else {
-                powers[a] * powers[b]
-            };
-            if pairs > 0 {
-                let mut others = powers;
-                others[a] -= 1;
-                others[b] -= 1;
-                let part = second[a][b] * product(u, others) * V::Scalar::of(pairs as f64);
-                sum = Some(sum.map_or(part, |sum| sum + part));
-            }
+        for code in 0..POWER[a] {
+            let first = coefficients[code] * u[a];
+            coefficients[code + POWER[a]] = first;
+            coefficients[code + 2 * POWER[a]] = first * u[a];
         }
     }
-    sum.unwrap_or(u[0].splat_like(V::Scalar::zero()))
-}
-
-/// The populations with this density, velocity and stress beyond equilibrium, and with coefficients of
-/// higher order that follow from these (Malaspinas 2015, eqs. 12 to 15).
-#[inline(always)]
-pub(crate) fn regularised<L: Lattice<Q>, V: Pack, const Q: usize>(
-    excess: V,
-    u: &[V; 3],
-    stress: &[[V; 3]; 3],
-) -> [V; Q] {
-    let mut coefficients = equilibrium::<L, V, Q>(excess, u);
-    for code in 0..count(L::DIMS) {
-        if order(code) >= 2 {
-            coefficients[code] = coefficients[code] + carried::<L, V, Q>(stress, u, code);
-        }
-    }
-    for code in 0..count(L::DIMS) {
-        if !exists::<Q>(code) {
-            coefficients[code] = coefficients[code].splat_like(V::Scalar::zero());
-        }
-    }
-    populations::<L, V, Q>(moments::<L, V, Q>(coefficients))
+    coefficients[0] = excess;
+    coefficients
 }
 
 /// Moments of Hermite coefficients.
@@ -123,16 +77,23 @@ pub(crate) fn regularised<L: Lattice<Q>, V: Pack, const Q: usize>(
 pub(crate) fn moments<L: Lattice<Q>, V: Pack, const Q: usize>(
     mut coefficients: [V; 27],
 ) -> [V; 27] {
-    let third = V::Scalar::of(SOUND_SPEED_SQUARED);
-    for a in 0..L::DIMS {
-        for code in 0..count(L::DIMS) {
-            if powers(code)[a] == 0 {
-                let square = code + 2 * POWER[a];
-                coefficients[square] = coefficients[square] + coefficients[code] * third;
-            }
-        }
+    moments_along::<L, V, Q, 0>(&mut coefficients);
+    moments_along::<L, V, Q, 1>(&mut coefficients);
+    if L::DIMS == 3 {
+        moments_along::<L, V, Q, 2>(&mut coefficients);
     }
     coefficients
+}
+
+#[inline(always)]
+fn moments_along<L: Lattice<Q>, V: Pack, const Q: usize, const A: usize>(
+    coefficients: &mut [V; 27],
+) {
+    let third = V::Scalar::of(SOUND_SPEED_SQUARED);
+    for n in 0..lines(L::DIMS) {
+        let [zero, _, two] = line::<A>(n);
+        coefficients[two] = coefficients[two] + coefficients[zero] * third;
+    }
 }
 
 /// Moments of populations.
@@ -142,39 +103,37 @@ pub(crate) fn moments_of<L: Lattice<Q>, V: Pack, const Q: usize>(f: &[V; Q]) -> 
     for q in 0..Q {
         sums[place::<L, Q>(q)] = f[q];
     }
-    for a in 0..L::DIMS {
-        for code in 0..count(L::DIMS) {
-            if powers(code)[a] == 0 {
-                let (one, two) = (code + POWER[a], code + 2 * POWER[a]);
-                let (plus, minus) = (sums[one], sums[two]);
-                sums[two] = plus + minus;
-                sums[one] = plus - minus;
-                sums[code] = sums[code] + sums[two];
-            }
-        }
+    sum_along::<L, V, Q, 0>(&mut sums);
+    sum_along::<L, V, Q, 1>(&mut sums);
+    if L::DIMS == 3 {
+        sum_along::<L, V, Q, 2>(&mut sums);
     }
     sums
+}
+
+#[inline(always)]
+fn sum_along<L: Lattice<Q>, V: Pack, const Q: usize, const A: usize>(sums: &mut [V; 27]) {
+    for n in 0..lines(L::DIMS) {
+        let [zero, one, two] = line::<A>(n);
+        let (plus, minus) = (sums[one], sums[two]);
+        sums[two] = plus + minus;
+        sums[one] = plus - minus;
+        sums[zero] = sums[zero] + sums[two];
+    }
 }
 
 /// The populations that have these moments.
 #[inline(always)]
 pub(crate) fn populations<L: Lattice<Q>, V: Pack, const Q: usize>(mut sums: [V; 27]) -> [V; Q] {
-    let half = V::Scalar::of(0.5);
     for code in 0..count(L::DIMS) {
         if !exists::<Q>(code) {
             sums[code] = sums[code].splat_like(V::Scalar::zero());
         }
     }
-    for a in 0..L::DIMS {
-        for code in 0..count(L::DIMS) {
-            if powers(code)[a] == 0 {
-                let (one, two) = (code + POWER[a], code + 2 * POWER[a]);
-                let (first, second) = (sums[one], sums[two]);
-                sums[code] = sums[code] - second;
-                sums[one] = (second + first) * half;
-                sums[two] = (second - first) * half;
-            }
-        }
+    part_along::<L, V, Q, 0>(&mut sums);
+    part_along::<L, V, Q, 1>(&mut sums);
+    if L::DIMS == 3 {
+        part_along::<L, V, Q, 2>(&mut sums);
     }
     let mut f = [sums[0]; Q];
     for q in 0..Q {
@@ -183,32 +142,51 @@ pub(crate) fn populations<L: Lattice<Q>, V: Pack, const Q: usize>(mut sums: [V; 
     f
 }
 
+#[inline(always)]
+fn part_along<L: Lattice<Q>, V: Pack, const Q: usize, const A: usize>(sums: &mut [V; 27]) {
+    let half = V::Scalar::of(0.5);
+    for n in 0..lines(L::DIMS) {
+        let [zero, one, two] = line::<A>(n);
+        let (first, second) = (sums[one], sums[two]);
+        sums[zero] = sums[zero] - second;
+        sums[one] = (second + first) * half;
+        sums[two] = (second - first) * half;
+    }
+}
+
 /// Moments about a velocity, from those about another one that is lower by `u`.
 #[inline(always)]
 pub(crate) fn seen_from<L: Lattice<Q>, V: Pack, const Q: usize>(
     mut sums: [V; 27],
     u: &[V; 3],
 ) -> [V; 27] {
-    for a in 0..L::DIMS {
-        for code in 0..count(L::DIMS) {
-            if powers(code)[a] == 0 {
-                let (one, two) = (code + POWER[a], code + 2 * POWER[a]);
-                let moved = sums[code] * u[a];
-                sums[two] = sums[two] - (sums[one] * V::Scalar::of(2.0) - moved) * u[a];
-                sums[one] = sums[one] - moved;
-            }
-        }
+    seen_along::<L, V, Q, 0>(&mut sums, u[0]);
+    seen_along::<L, V, Q, 1>(&mut sums, u[1]);
+    if L::DIMS == 3 {
+        seen_along::<L, V, Q, 2>(&mut sums, u[2]);
     }
     sums
+}
+
+#[inline(always)]
+fn seen_along<L: Lattice<Q>, V: Pack, const Q: usize, const A: usize>(sums: &mut [V; 27], u: V) {
+    for n in 0..lines(L::DIMS) {
+        let [zero, one, two] = line::<A>(n);
+        let moved = sums[zero] * u;
+        sums[two] = sums[two] - (sums[one] * V::Scalar::of(2.0) - moved) * u;
+        sums[one] = sums[one] - moved;
+    }
 }
 
 /// Where a population lies among moments before they are summed up: velocity 0, 1, -1 at place 0, 1,
 /// 2 in each direction.
 #[inline(always)]
-fn place<L: Lattice<Q>, const Q: usize>(q: usize) -> usize {
-    let mut code = 0;
-    for a in 0..L::DIMS {
-        code += POWER[a] * L::VELOCITIES[q][a].rem_euclid(3) as usize;
-    }
-    code
+const fn place<L: Lattice<Q>, const Q: usize>(q: usize) -> usize {
+    let [x, y, z] = L::VELOCITIES[q];
+    code(x) * POWER[0] + code(y) * POWER[1] + code(z) * POWER[2]
+}
+
+#[inline(always)]
+const fn code(c: i32) -> usize {
+    if c < 0 { 2 } else { c as usize }
 }

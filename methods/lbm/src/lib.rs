@@ -9,11 +9,14 @@
 //! |---|---|
 //! | [`lattice`] | velocities and weights |
 //! | [`mesh`] | sites and time step: the conversion of units |
-//! | `flow.rs` | density, velocity and equilibrium of a site |
-//! | `hermite.rs` | moments of populations, and populations of moments |
+//! | `flow.rs` | density, velocity and stress of a site |
+//! | `hermite.rs`, `frame.rs` | moments of populations, and populations of moments |
 //! | `relaxation.rs` | how fast the stress relaxes, eddies included |
 //! | `collision/` | one collision each, reading like its paper |
-//! | `stream.rs`, `around.rs` | the step: pull, collide, write, for packs of sites |
+//! | `stream.rs` | the step with two sets of columns: pull, collide, write |
+//! | `in_place.rs` | the step with one set |
+//! | `row.rs`, `around.rs` | rows of sites, and the populations around them |
+//! | `kernel.rs` | the collision of packs of sites |
 //! | `sites.rs`, `link.rs` | what bodies do to rows of sites, and to populations |
 //! | [`opening`] | velocity inlets, pressure and non-reflecting outlets |
 //! | [`start`] | consistent populations at the beginning |
@@ -68,9 +71,13 @@ mod acceleration;
 mod around;
 mod derived;
 mod flow;
+mod frame;
 mod hermite;
+mod in_place;
+mod kernel;
 mod link;
 mod relaxation;
+mod row;
 mod sites;
 mod stream;
 
@@ -82,5 +89,5 @@ pub use lattice::{Lattice, LatticeKind};
 pub use mesh::Mesh;
 pub use model::{Compiled, Lbm};
 pub use opening::{Condition, Opening};
-pub use physics::{Fluid, Physics, Scheme};
+pub use physics::{Fluid, Physics, Scheme, Streaming};
 pub use start::Start;

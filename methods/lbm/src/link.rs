@@ -19,7 +19,7 @@ pub(crate) struct Link<T> {
     /// Share of the same population of the same site.
     same: T,
     /// What a wall that slides adds.
-    sliding: T,
+    pub sliding: T,
 }
 
 /// What is known of a link when it is made.

@@ -27,17 +27,20 @@ pub struct Totals {
 /// Sums up the fluid. The derived fields must be up to date
 /// ([`finegrain_framework::Simulation::derive`]).
 pub fn totals<T: Real>(whole: &mut Whole<'_, Grid>, parts: &Parts<T>) -> Totals {
-    let Parts { fields, mesh, lattice, density, .. } = parts;
+    let Parts { fields, mesh, lattice, density, streaming, .. } = parts;
+    let velocities = lattice.velocities();
     let sums = whole.sum(|near| {
-        let populations: Vec<_> = fields.populations.iter().map(|&f| near.rows(f)).collect();
+        let views: Vec<_> = fields.populations.iter().map(|&f| near.state(f)).collect();
         let velocity: Vec<_> = fields.velocity.iter().map(|&v| near.rate_rows(v)).collect();
         let solid = near.rows(fields.solid);
         let mut sums = [0.0; 9];
         for (j, k) in near.sub_domain().rows() {
             let at = (j as isize, k as isize);
             let solid = solid.row(at.0, at.1);
+            let around = Around::new(near, &views, velocities, *streaming, (j, k));
             for x in (0..solid.len()).filter(|&x| solid[x] == 0) {
-                let excess: f64 = populations.iter().map(|f| f.row(at.0, at.1)[x].as_f64()).sum();
+                let leaving = |q| around.at(q, x, [0; 3]).as_f64();
+                let excess: f64 = (0..velocities.len()).map(leaving).sum();
                 sums[0] += 1.0;
                 sums[1] += excess;
                 for (a, velocity) in velocity.iter().enumerate() {
@@ -126,14 +129,14 @@ pub fn force_on_body<T: Real>(
     parts: &Parts<T>,
     body: usize,
 ) -> [f64; 3] {
-    let Parts { fields, mesh, lattice, density, sites } = parts;
+    let Parts { fields, mesh, lattice, streaming, density, sites } = parts;
     let velocities = lattice.velocities();
     let ny = mesh.shape[1];
     let force = whole.sum(|near| {
         let views: Vec<_> = fields.populations.iter().map(|&f| near.state(f)).collect();
         let mut force = [0.0; 3];
         for (j, k) in near.sub_domain().rows() {
-            let around = Around::new(near, &views, velocities, (j, k));
+            let around = Around::new(near, &views, velocities, *streaming, (j, k));
             for single in sites.singles(k * ny + j) {
                 for link in sites.links(single).iter().filter(|l| usize::from(l.body) == body) {
                     let x = single.x as usize;

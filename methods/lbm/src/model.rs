@@ -7,17 +7,20 @@ use finegrain_framework::space::Grid;
 use finegrain_framework::{Columns, Model, Plan, Real, RigidPace, Step};
 
 use crate::acceleration::Acceleration;
-use crate::collision::{Bgk, Central, Collide, Collision, Cumulant, Mrt, Regularised, Trt};
+use crate::collision::{Central, Collide, Collision, Cumulant, Mrt, Regularised, Trt};
 use crate::derived::Derived;
 use crate::error::LbmError;
 use crate::fields::Fields;
+use crate::in_place::{self, InPlace, TurnBack, Turns};
+use crate::kernel::{Collider, Kernel};
 use crate::lattice::{D2Q9, D3Q19, D3Q27, Lattice, LatticeKind};
 use crate::mesh::Mesh;
 use crate::opening::Openings;
-use crate::physics::{Fluid, Physics, Scheme};
+use crate::physics::{Fluid, Physics, Scheme, Streaming};
 use crate::relaxation::Relaxation;
+use crate::row::Local;
 use crate::sites::{self, Sites};
-use crate::start::Start;
+use crate::start::{Setting, Start};
 use crate::stream::Stream;
 
 /// A lattice Boltzmann model, ready to run.
@@ -38,6 +41,7 @@ pub struct Parts<T> {
     pub(crate) fields: Fields<T>,
     pub(crate) mesh: Mesh,
     pub(crate) lattice: LatticeKind,
+    pub(crate) streaming: Streaming,
     pub(crate) density: f64,
     pub(crate) sites: Arc<Sites<T>>,
 }
@@ -122,8 +126,8 @@ impl<T: Real> Lbm<T> {
     ) -> Result<Self, LbmError> {
         let builder = Builder { mesh, fluid, physics, scheme, start };
         match scheme.collision {
-            Collision::Bgk => builder.build(lattice, Bgk),
-            Collision::Trt { magic } => builder.build(lattice, Trt { magic }),
+            Collision::Bgk => builder.build(lattice, Trt { magic: None }),
+            Collision::Trt { magic } => builder.build(lattice, Trt { magic: Some(magic) }),
             Collision::Mrt { magic } => builder.build(lattice, Mrt { magic }),
             Collision::CentralMoments => builder.build(lattice, Central),
             Collision::Cumulant => builder.build(lattice, Cumulant),
@@ -143,50 +147,51 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn build<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize>(
         &self,
-        _: L,
+        lattice: L,
         collision: C,
     ) -> Result<Lbm<T>, LbmError> {
-        let &Self { mesh, fluid, physics, scheme, start } = self;
-        let domain = Grid::builder(mesh.shape)
-            .periodic(mesh.periodic)
-            .origin(mesh.position([0; 3]))
-            .spacing([mesh.spacing; 3])
-            .build();
-        let mut columns = Columns::new(domain.points());
-        let fields = Fields::<T>::declare(&mut columns, scheme.lattice);
-        let solid = sites::solid(mesh, physics)?;
-        let sites = Arc::new(Sites::new(mesh, physics, scheme, &solid)?);
-        let unit = mesh.unit_acceleration();
+        let &Self { mesh, fluid, physics, scheme, .. } = self;
         let relaxation = Relaxation {
             time: mesh.relaxation_time(fluid.kinematic_viscosity),
             smagorinsky: scheme.smagorinsky,
         };
-        let acceleration = Acceleration {
-            uniform: physics.body_acceleration.map(|a| a / unit),
-            field: physics.acceleration_field.clone(),
-            mesh: *mesh,
+        let unit = mesh.unit_acceleration();
+        let uniform = physics.body_acceleration.map(|a| a / unit);
+        let collider =
+            Box::new(Kernel { lattice: PhantomData::<L>, collision, relaxation, uniform });
+        self.with(lattice, collider, &relaxation, uniform)
+    }
+
+    /// All that is the same for every collision.
+    fn with<T: Real, L: Lattice<Q>, const Q: usize>(
+        &self,
+        _: L,
+        collider: Box<dyn Collider<T, Q>>,
+        relaxation: &Relaxation,
+        uniform: [f64; 3],
+    ) -> Result<Lbm<T>, LbmError> {
+        let &Self { mesh, fluid, physics, scheme, start } = self;
+        let (streaming, velocities) = (scheme.streaming(physics)?, scheme.lattice.velocities());
+        let grid =
+            Grid::builder(mesh.shape).origin(mesh.position([0; 3])).spacing([mesh.spacing; 3]);
+        let domain = match streaming {
+            Streaming::TwoGrids => grid.periodic(mesh.periodic),
+            // What leaves the mesh is kept at its other end.
+            Streaming::InPlace => grid.periodic([true; 3]).shifts(&in_place::offsets(velocities)),
         };
-        for (point, _) in solid.iter().enumerate().filter(|(_, body)| **body == 0) {
-            let [nx, ny, _] = mesh.shape;
-            let site = [point % nx, point / nx % ny, point / (nx * ny)];
-            let f = start.populations::<L, C, T, Q>(
-                &collision,
-                &relaxation,
-                fluid,
-                &acceleration,
-                site,
-            )?;
-            for (&column, f) in fields.populations.iter().zip(f) {
-                columns.values_mut(column)[point] = f;
-            }
-        }
-        columns.values_mut(fields.solid).copy_from_slice(&solid);
-        let velocities = scheme.lattice.velocities();
+        let domain = domain.build();
+        let mut columns = Columns::new(domain.points());
+        let fields = Fields::<T>::declare(&mut columns, scheme.lattice, streaming);
+        let solid = sites::solid(mesh, physics)?;
+        let sites = Arc::new(Sites::new(mesh, physics, scheme, &solid)?);
+        let acceleration =
+            Acceleration { uniform, field: physics.acceleration_field.clone(), mesh: *mesh };
         let unit_pressure = fluid.density * mesh.unit_velocity().powi(2);
         let openings = Openings { all: physics.openings.clone(), mesh: *mesh, unit_pressure };
         let derived = Derived {
             populations: fields.populations.clone(),
             velocities,
+            streaming,
             solid: fields.solid,
             pressure: fields.pressure,
             velocity: fields.velocity.clone(),
@@ -194,30 +199,45 @@ impl Builder<'_> {
             unit_velocity: mesh.unit_velocity(),
             unit_pressure,
         };
-        let stream = Stream::<T, L, C, Q> {
-            now: std::array::from_fn(|q| fields.populations[q]),
-            next: std::array::from_fn(|q| fields.next[q]),
-            lattice: PhantomData,
-            collision,
-            relaxation,
-            acceleration,
-            sites: Arc::clone(&sites),
-            openings,
-            velocities,
-        };
-        let mut step = Step::builder().rate(stream);
-        for (&now, &next) in fields.populations.iter().zip(&fields.next) {
-            step = step.swap(now, next);
-        }
+        let local =
+            Local { collider, acceleration, sites: Arc::clone(&sites), openings, velocities };
+        let setting = Setting { relaxation, fluid, local: &local, streaming };
+        start.fill::<L, T, Q>(&setting, &solid, &mut columns, &fields.populations)?;
+        columns.values_mut(fields.solid).copy_from_slice(&solid);
         let plan = Plan {
             prologue: None,
-            step: step.build(),
+            step: step::<T, L, Q>(mesh, &fields, local),
             derived: Some(Step::builder().rate(derived).build()),
         };
         let mut model = Model::with_fixed_dt("lbm", domain, columns, plan, mesh.time_step);
         model.pacing = Box::new(RigidPace(mesh.time_step));
         let (lattice, density) = (scheme.lattice, fluid.density);
-        let parts = Parts { fields: fields.clone(), mesh: *mesh, lattice, density, sites };
+        let parts =
+            Parts { fields: fields.clone(), mesh: *mesh, lattice, streaming, density, sites };
         Ok(Lbm { model, fields, mesh: *mesh, parts })
     }
+}
+
+/// A step: in place, unless there is a second set of columns.
+fn step<T: Real, L: Lattice<Q>, const Q: usize>(
+    mesh: &Mesh,
+    fields: &Fields<T>,
+    local: Local<T, Q>,
+) -> Step<Grid> {
+    let (lattice, now) = (PhantomData::<L>, std::array::from_fn(|q| fields.populations[q]));
+    if fields.next.is_empty() {
+        let turns = Turns::new(mesh, local.velocities, &local.sites);
+        let mut step = Step::builder();
+        if !turns.is_empty() {
+            step = step.update(TurnBack { slots: now, turns });
+        }
+        step = step.update(InPlace { lattice, slots: now, local });
+        return (1..Q)
+            .step_by(2)
+            .fold(step, |step, q| step.swap_states(now[q], now[q + 1]))
+            .build();
+    }
+    let next: [_; Q] = std::array::from_fn(|q| fields.next[q]);
+    let step = Step::builder().rate(Stream { lattice, now, next, local });
+    (0..Q).fold(step, |step, q| step.swap(now[q], next[q])).build()
 }

@@ -14,7 +14,7 @@ use pulp::Scalar;
 
 use crate::error::{LbmError, finite, not_negative};
 use crate::flow;
-use crate::hermite;
+use crate::frame;
 use crate::lattice::{Lattice, SOUND_SPEED_SQUARED, opposite};
 use crate::mesh::Mesh;
 
@@ -121,14 +121,14 @@ impl Openings {
         number: usize,
         f: &mut [T; Q],
         edge: &Edge,
-        earlier: impl Fn(i32) -> [T; Q],
+        earlier: &dyn Fn(i32) -> [T; Q],
     ) {
         let opening = &self.all[number];
         let (excess, velocity) = self.state::<L, T, Q>(opening, f, edge, earlier);
         let pack = |x: f64| T::Pack::<Scalar>::splat(Scalar, T::of(x));
         let (excess, velocity) = (pack(excess), velocity.map(pack));
         let no_stress = [[pack(0.0); 3]; 3];
-        let equilibrium = hermite::regularised::<L, _, Q>(excess, &velocity, &no_stress);
+        let equilibrium = frame::regularised::<L, _, Q>(excess, &velocity, no_stress);
         // The part beyond equilibrium that comes from outside is that which goes there.
         let mut beyond = [pack(0.0); Q];
         for q in 0..Q {
@@ -137,8 +137,9 @@ impl Openings {
                 T::Pack::<Scalar>::load(Scalar, std::slice::from_ref(&f[from])) - equilibrium[from];
         }
         let nowhere = [pack(0.0); 3];
-        let stress = flow::stress::<L, _, Q>(&beyond, pack(0.0), &nowhere);
-        let completed = hermite::regularised::<L, _, Q>(excess, &velocity, &stress);
+        let (sum, _) = flow::moments::<L, _, Q>(&beyond);
+        let stress = flow::stress::<L, _, Q>(&beyond, sum, &nowhere);
+        let completed = frame::regularised::<L, _, Q>(excess, &velocity, stress);
         for q in 0..Q {
             completed[q].store(std::slice::from_mut(&mut f[q]));
         }
@@ -156,7 +157,7 @@ impl Openings {
         opening: &Opening,
         f: &[T; Q],
         edge: &Edge,
-        earlier: impl Fn(i32) -> [T; Q],
+        earlier: &dyn Fn(i32) -> [T; Q],
     ) -> State {
         let (axis, inward) = (opening.axis(), f64::from(opening.inward()));
         // Populations that go along the plane, and twice those that go out through it.

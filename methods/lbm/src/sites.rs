@@ -2,7 +2,6 @@
 //! that need more, with their links.
 
 use finegrain_framework::Real;
-use finegrain_framework::pack::MOST_LANES;
 use finegrain_framework::shape::Shape;
 
 use crate::error::LbmError;
@@ -28,12 +27,28 @@ pub(crate) struct Sites<T> {
     links: Vec<Link<T>>,
 }
 
-/// Sites next to one another that pull from sites of the fluid only and not around the ends of their
-/// row, at least [`MOST_LANES`] of them.
+/// Sites next to one another that pull from sites of the fluid only, in whole [lines](line) of the cache.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
     pub start: u32,
     pub end: u32,
+}
+
+impl Run {
+    /// The run, with lines at the ends of their row of `nx` sites, which pull from the other end, too, by
+    /// themselves, and last: the row is in the cache by then.
+    pub fn parts<T>(self, nx: usize) -> impl Iterator<Item = [usize; 2]> {
+        let (start, end) = (self.start as usize, self.end as usize);
+        let first = if start == 0 { line::<T>() } else { start };
+        let last = if end == nx { first.max(end - line::<T>()) } else { end };
+        [[first, last], [last, end], [start, first]].into_iter().filter(|[start, end]| start < end)
+    }
+}
+
+/// Scalars in a line of the cache, where columns begin: packs of runs lie in lines, so that they are
+/// written whole and, where that is faster, past the cache.
+pub(crate) const fn line<T>() -> usize {
+    64 / size_of::<T>()
 }
 
 /// Any other site of the fluid.
@@ -132,27 +147,26 @@ impl<T: Real> Sites<T> {
         let mut cuts = Vec::new();
         for z in 0..mesh.shape[2] {
             for y in 0..mesh.shape[1] {
-                let mut run = 0..0;
+                let (mut run, row) = (0..0, mesh.number([0, y, z]));
                 for x in 0..mesh.shape[0] {
                     if solid[mesh.number([x, y, z])] > 0 {
-                        sites.close(&mut run);
+                        sites.close(&mut run, row);
                         continue;
                     }
                     let opening = survey.opening([x, y, z])?;
                     survey.cuts([x, y, z], &mut cuts)?;
-                    let at_end = x == 0 || x + 1 == mesh.shape[0];
-                    if cuts.is_empty() && opening == 0 && !at_end {
+                    if cuts.is_empty() && opening == 0 {
                         if run.is_empty() {
                             run = x..x;
                         }
                         run.end = x + 1;
                     } else {
-                        sites.close(&mut run);
+                        sites.close(&mut run, row);
                         let links = cuts.iter().map(|cut| Link::new(cut, scheme.wall));
                         sites.single(x, links, opening);
                     }
                 }
-                sites.close(&mut run);
+                sites.close(&mut run, row);
                 sites.run_start.push(sites.runs.len() as u32);
                 sites.single_start.push(sites.singles.len() as u32);
             }
@@ -160,14 +174,17 @@ impl<T: Real> Sites<T> {
         Ok(sites)
     }
 
-    /// Ends a run; one that does not fill a pack becomes single sites.
-    fn close(&mut self, run: &mut std::ops::Range<usize>) {
-        if run.len() >= MOST_LANES {
-            self.runs.push(Run { start: run.start as u32, end: run.end as u32 });
-        } else {
-            for x in run.clone() {
-                self.single(x, [], 0);
-            }
+    /// Ends a run, in the row of which the first site has number `row`; sites before and after its whole
+    /// lines become single ones.
+    fn close(&mut self, run: &mut std::ops::Range<usize>, row: usize) {
+        let start = (row + run.start).next_multiple_of(line::<T>()) - row;
+        let lines = run.end.saturating_sub(start) / line::<T>();
+        let whole = if lines > 0 { start..start + lines * line::<T>() } else { run.end..run.end };
+        for x in (run.start..whole.start).chain(whole.end..run.end) {
+            self.single(x, [], 0);
+        }
+        if !whole.is_empty() {
+            self.runs.push(Run { start: whole.start as u32, end: whole.end as u32 });
         }
         *run = 0..0;
     }

@@ -1,15 +1,16 @@
 //! The flow at the beginning.
 
-use finegrain_framework::Real;
-use finegrain_framework::pack::Pack;
-use pulp::Scalar;
+use finegrain_framework::pack::MOST_LANES;
+use finegrain_framework::{Columns, Real, State};
 
 use crate::acceleration::Acceleration;
-use crate::collision::Collide;
+use crate::around::wrap;
 use crate::error::LbmError;
+use crate::in_place;
 use crate::lattice::Lattice;
-use crate::physics::Fluid;
+use crate::physics::{Fluid, Streaming};
 use crate::relaxation::Relaxation;
+use crate::row::{Group, Local};
 
 /// A function of the position, m.
 type Given<R> = Box<dyn Fn([f64; 3]) -> R>;
@@ -28,20 +29,74 @@ impl Default for Start {
     }
 }
 
+/// What the populations at the beginning follow from, besides.
+pub(crate) struct Setting<'a, T, const Q: usize> {
+    pub relaxation: &'a Relaxation,
+    pub fluid: &'a Fluid,
+    pub local: &'a Local<T, Q>,
+    pub streaming: Streaming,
+}
+
 impl Start {
     /// From a velocity, without pressure differences.
     pub fn with_velocity(velocity: impl Fn([f64; 3]) -> [f64; 3] + 'static) -> Self {
         Self { velocity: Box::new(velocity), ..Self::default() }
     }
 
-    /// The populations of a site after its first collision, beyond the weights.
+    /// Fills in the populations after the first collision of the sites that are in no body.
+    pub(crate) fn fill<L: Lattice<Q>, T: Real, const Q: usize>(
+        &self,
+        setting: &Setting<'_, T, Q>,
+        solid: &[u8],
+        columns: &mut Columns,
+        populations: &[State<T>],
+    ) -> Result<(), LbmError> {
+        let Setting { relaxation, fluid, local, streaming } = setting;
+        let acceleration = &local.acceleration;
+        let [nx, ny, nz] = acceleration.mesh.shape;
+        let site = |point: usize| [point % nx, point / nx % ny, point / (nx * ny)];
+        let fluid_sites: Vec<_> = (0..solid.len()).filter(|&point| solid[point] == 0).collect();
+        let mut before: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
+        let mut after = before;
+        let mut here: [Group<T>; 3] = [[T::zero(); MOST_LANES]; 3];
+        for points in fluid_sites.chunks(MOST_LANES) {
+            for (place, &point) in points.iter().enumerate() {
+                let f =
+                    self.populations::<L, T, Q>(relaxation, fluid, acceleration, site(point))?;
+                for q in 0..Q {
+                    before[q][place] = f[q];
+                }
+                let given = acceleration.at(site(point), 0.0);
+                for a in 0..3 {
+                    here[a][place] = T::of(given[a]);
+                }
+            }
+            let (from, to) =
+                (before.each_ref().map(|f| &f[..]), after.each_mut().map(|f| &mut f[..]));
+            local.collider.pull(&from, to, Some(here.each_ref().map(|a| &a[..])), None);
+            for q in 0..Q {
+                let kept = match streaming {
+                    Streaming::TwoGrids => [0; 3],
+                    Streaming::InPlace => in_place::kept(L::VELOCITIES[q], q),
+                };
+                let values = columns.values_mut(populations[q]);
+                for (f, &point) in after[q].iter().zip(points) {
+                    let [x, y, z] = site(point);
+                    let (x, y) = (wrap(x as i32 + kept[0], nx), wrap(y as i32 + kept[1], ny));
+                    values[(wrap(z as i32 + kept[2], nz) * ny + y) * nx + x] = *f;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The populations of a site before its first collision, beyond the weights.
     ///
-    /// Before it they are the equilibrium and what goes with the rate of strain and the force in
+    /// They are the equilibrium and what goes with the rate of strain and the force in
     /// first order of the relaxation time (Chapman & Enskog; Skordos 1993): its momentum is
     /// `-F / 2`, its stress `-2 rho c_s^2 tau S - (u F + F u) / 2`.
-    pub(crate) fn populations<L: Lattice<Q>, C: Collide<T>, T: Real, const Q: usize>(
+    fn populations<L: Lattice<Q>, T: Real, const Q: usize>(
         &self,
-        collision: &C,
         relaxation: &Relaxation,
         fluid: &Fluid,
         acceleration: &Acceleration,
@@ -92,13 +147,6 @@ impl Start {
             }
             let beyond = -1.5 * density * along(a) + 4.5 * stress;
             f[q] = T::of(L::WEIGHTS[q] * (excess + density * quadratic + beyond));
-        }
-        let pack = |x: T| T::Pack::<Scalar>::splat(Scalar, x);
-        let packs = f.map(pack);
-        let omega = relaxation.rate::<L, _, Q>(&packs);
-        let packs = collision.collide::<L, _, Q>(packs, a.map(|a| pack(T::of(a))), omega);
-        for q in 0..Q {
-            packs[q].store(std::slice::from_mut(&mut f[q]));
         }
         Ok(f)
     }

@@ -6,12 +6,22 @@ use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::{HandOut, Schedule, Settings, Simulation, VectorField};
 use finegrain_lbm::{
     Body, Collision, Compiled, Condition, Fluid, LatticeKind, Lbm, Mesh, Opening, Physics, Scheme,
-    Start,
+    Start, Streaming, Wall,
 };
+
+/// A wall that slides, a body across a periodic end, a force that varies, in place.
+fn in_place<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
+    let (streaming, wall) = (Some(Streaming::InPlace), Wall::HalfWay);
+    between_walls(Scheme { collision, streaming, wall, ..Scheme::on(lattice) })
+}
 
 /// Everything at once: walls that slide, a curved body across a periodic end, a force that varies.
 fn model<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
-    let depth = if lattice.dims() == 2 { 1 } else { 11 };
+    between_walls(Scheme { collision, ..Scheme::on(lattice) })
+}
+
+fn between_walls<T: Compiled>(scheme: Scheme) -> Lbm<T> {
+    let depth = if scheme.lattice.dims() == 2 { 1 } else { 11 };
     let mesh = Mesh {
         shape: [45, 21, depth],
         corner: [0.0; 3],
@@ -34,7 +44,6 @@ fn model<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
         ],
         ..Physics::default()
     };
-    let scheme = Scheme { collision, ..Scheme::on(lattice) };
     let start = Start::with_velocity(|[x, _, _]| [0.0, 0.1 * (TAU * x / 4.5).sin(), 0.0]);
     Lbm::new(&mesh, &fluid, &physics, &scheme, &start).unwrap()
 }
@@ -99,6 +108,13 @@ fn in_space() {
 }
 
 #[test]
+fn streamed_in_place() {
+    same_bits::<f64>(in_place, LatticeKind::D2Q9, Collision::default());
+    same_bits::<f64>(in_place, LatticeKind::D3Q19, Collision::default());
+    same_bits::<f32>(in_place, LatticeKind::D3Q27, Collision::Bgk);
+}
+
+#[test]
 fn in_single_precision() {
     same_bits::<f32>(model, LatticeKind::D3Q19, Collision::default());
     same_bits::<f32>(model, LatticeKind::D2Q9, Collision::Regularised);
@@ -114,7 +130,7 @@ fn in_a_channel_with_open_ends() {
 /// From a checkpoint written in the middle, with the populations in either set of columns.
 #[test]
 fn after_a_restart() {
-    for build in [model::<f64>, channel::<f64>] {
+    for build in [model::<f64>, channel::<f64>, in_place::<f64>] {
         restart(build);
     }
 }

@@ -126,6 +126,7 @@ fn scheme(parameters: &Parameters, lattice: LatticeKind, has_walls: bool) -> Sch
             true => Wall::HalfWay,
             false => Wall::Interpolated,
         },
+        streaming: None,
         smagorinsky: Some(parameters.number("smagorinsky")).filter(|constant| *constant > 0.0),
     }
 }

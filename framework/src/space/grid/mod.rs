@@ -41,6 +41,7 @@ pub struct GridBuilder {
     origin: [f64; 3],
     spacing: [f64; 3],
     tile: Option<[usize; 2]>,
+    shifts: Vec<[isize; 2]>,
 }
 
 impl GridBuilder {
@@ -75,10 +76,17 @@ impl GridBuilder {
         self
     }
 
+    /// Lets stages own rows with an offset ([`crate::UpdateStage::shifts`]): shift number `n` has each tile own
+    /// the rows `shifts[n]` away from its own, in y and z.
+    pub fn shifts(mut self, shifts: &[[isize; 2]]) -> Self {
+        self.shifts = shifts.to_vec();
+        self
+    }
+
     /// The grid.
     ///
     /// # Panics
-    /// If a length of the grid or of a tile is 0.
+    /// If there is a shift in a direction that is not periodic, or beyond the reach. If a length of the grid or of a tile is 0.
     pub fn build(self) -> Grid {
         let [nx, ny, nz] = self.shape;
         assert!(nx * ny * nz > 0, "a grid of shape {:?} has no points", self.shape);
@@ -96,7 +104,7 @@ impl GridBuilder {
             tiles,
             partition: Partition::new(nx * ny * nz),
         };
-        grid.divide();
+        grid.divide(&self.shifts);
         grid
     }
 }
@@ -122,6 +130,7 @@ impl Grid {
             origin: [0.0; 3],
             spacing: [1.0; 3],
             tile: None,
+            shifts: Vec::new(),
         }
     }
 
@@ -157,7 +166,7 @@ impl Grid {
         std::array::from_fn(|a| self.origin[a] + index[a] as f64 * self.spacing[a])
     }
 
-    fn divide(&mut self) {
+    fn divide(&mut self, shifts: &[[isize; 2]]) {
         let [ny, nz] = [self.shape[1], self.shape[2]];
         let mut neighbours = Vec::new();
         for tk in 0..self.tiles[1] {
@@ -182,6 +191,16 @@ impl Grid {
                 self.partition.push(spans, neighbours.iter().copied());
             }
         }
+        for &shift in shifts {
+            let within = |a: usize| {
+                let is_far = shift[a].unsigned_abs() > self.reach;
+                shift[a] == 0 || (self.periodic[a + 1] && !is_far)
+            };
+            assert!(within(0) && within(1), "rows cannot be owned with an offset of {shift:?}");
+            let mut partition = std::mem::take(&mut self.partition);
+            partition.push_shift(|id| self.displaced(id, shift));
+            self.partition = partition;
+        }
         self.partition.seal().expect("tiles cover the grid and see each other mutually");
     }
 
@@ -189,6 +208,20 @@ impl Grid {
     fn extent(&self, tj: usize, tk: usize) -> [std::ops::Range<usize>; 2] {
         let cut = |t: usize, length: usize, n: usize| t * length..((t + 1) * length).min(n);
         [cut(tj, self.tile[0], self.shape[1]), cut(tk, self.tile[1], self.shape[2])]
+    }
+
+    /// The rows that are `shift` away from those of tile number `id`, one by one.
+    fn displaced(&self, id: usize, shift: [isize; 2]) -> impl Iterator<Item = Span> {
+        let [rows, planes] = self.extent(id % self.tiles[0], id / self.tiles[0]);
+        let [nx, ny, nz] = self.shape;
+        let along =
+            move |i: usize, by: isize, n: usize| (i as isize + by).rem_euclid(n as isize) as usize;
+        planes.flat_map(move |k| {
+            rows.clone().map(move |j| {
+                let row = along(k, shift[1], nz) * ny + along(j, shift[0], ny);
+                Span { start: row * nx, end: (row + 1) * nx }
+            })
+        })
     }
 
     /// The tile that owns row j of plane k.

@@ -1,7 +1,7 @@
 //! Rows of a grid's columns, as stages see them.
 
 use super::{Grid, Tile};
-use crate::columns::{Element, Rate, State};
+use crate::columns::{Element, Handle, Rate, State};
 use crate::domain::Span;
 use crate::view::{Near, Own, Part, PartMut, Rates, Reach, View};
 
@@ -43,16 +43,22 @@ fn wrap(i: isize, n: usize, periodic: bool) -> Option<usize> {
 pub struct RowsMut<'a, T> {
     tile: Tile<'a>,
     part: PartMut<'a, T>,
+    /// Whether these are other rows than the tile's, one by one.
+    is_shifted: bool,
 }
 
 impl<T> RowsMut<'_, T> {
-    /// Row j of plane k, all of x.
+    /// Row j of plane k, all of x; in a column that is owned with an offset, the row that is so far
+    /// away from it.
     ///
     /// # Panics
-    /// If the tile does not own it.
+    /// If row j of plane k is not the tile's.
     #[inline]
     pub fn row(&mut self, j: usize, k: usize) -> &mut [T] {
         let (span, range) = place(&self.tile, j, k);
+        if self.is_shifted {
+            return self.part.span(span * self.tile.rows.len() + j - self.tile.rows.start);
+        }
         &mut self.part.span(span)[range]
     }
 }
@@ -128,6 +134,7 @@ impl<'a> Rates<'a, Grid> {
         RowsMut {
             tile: crate::Domain::sub_domain(self.domain(), self.id()),
             part: self.column(column),
+            is_shifted: false,
         }
     }
 }
@@ -138,7 +145,8 @@ impl<'a> Own<'a, Grid> {
     /// # Panics
     /// As [`Own::state_mut`].
     pub fn rows_mut<T: Element>(&mut self, column: State<T>) -> RowsMut<'a, T> {
-        RowsMut { tile: self.sub_domain(), part: self.state_mut(column) }
+        let is_shifted = self.is_shifted(column.id());
+        RowsMut { tile: self.sub_domain(), part: self.state_mut(column), is_shifted }
     }
 
     /// The tile's own rows of a rate column.
@@ -146,6 +154,7 @@ impl<'a> Own<'a, Grid> {
     /// # Panics
     /// As [`Own::rate`].
     pub fn rate_rows<T: Element>(&mut self, column: Rate<T>) -> OwnRows<'a, T> {
+        assert!(!self.is_shifted(column.id()), "rates are owned without offset");
         OwnRows { tile: self.sub_domain(), part: self.rate(column) }
     }
 }

@@ -5,7 +5,7 @@ use finegrain_framework::pack::Pack;
 
 use super::Collide;
 use crate::flow;
-use crate::hermite;
+use crate::frame::{self, Beyond};
 use crate::lattice::Lattice;
 
 /// In the frame of the fluid, where the equilibrium is that of rest, the stress without its trace
@@ -24,20 +24,8 @@ impl<T: Real> Collide<T> for Central {
     ) -> [V; Q] {
         let (excess, before) = flow::velocity::<L, V, Q>(&f);
         let after = flow::accelerated::<L, V, Q>(&before, &acceleration);
-        let mut stress = flow::deviator::<L, V, Q>(flow::stress::<L, V, Q>(&f, excess, &before));
-        let kept = -omega + T::one();
-        for a in 0..L::DIMS {
-            for b in a..L::DIMS {
-                stress[a][b] = stress[a][b] * kept;
-            }
-        }
-        let equilibrium = hermite::equilibrium::<L, V, Q>(excess, &after);
-        let mut moments = hermite::moments::<L, V, Q>(equilibrium);
-        for code in 0..hermite::count(L::DIMS) {
-            if hermite::order(code) >= 2 {
-                moments[code] = moments[code] + hermite::carried::<L, V, Q>(&stress, &after, code);
-            }
-        }
-        hermite::populations::<L, V, Q>(moments)
+        let stress = flow::deviator::<L, V, Q>(flow::stress::<L, V, Q>(&f, excess, &before));
+        let kept = flow::scaled::<L, V, Q>(stress, -omega + T::one());
+        frame::populations::<L, V, Q>(excess, &after, &Beyond::stress(kept))
     }
 }

@@ -1,13 +1,11 @@
 //! Collisions: how populations relax towards equilibrium.
 
-mod bgk;
 mod central;
 mod cumulant;
 mod mrt;
 mod regularised;
 mod trt;
 
-pub(crate) use bgk::Bgk;
 pub(crate) use central::Central;
 pub(crate) use cumulant::Cumulant;
 pub(crate) use mrt::Mrt;

@@ -10,7 +10,7 @@ use finegrain_framework::pack::Pack;
 
 use super::Collide;
 use crate::flow;
-use crate::hermite;
+use crate::frame;
 use crate::lattice::Lattice;
 
 /// `f* = sum over n of w H_n (a_n,eq + (1 - omega) a_n,neq)`.
@@ -27,13 +27,8 @@ impl<T: Real> Collide<T> for Regularised {
     ) -> [V; Q] {
         let (excess, before) = flow::velocity::<L, V, Q>(&f);
         let after = flow::accelerated::<L, V, Q>(&before, &acceleration);
-        let mut beyond = flow::stress::<L, V, Q>(&f, excess, &before);
-        let kept = -omega + T::one();
-        for a in 0..L::DIMS {
-            for b in a..L::DIMS {
-                beyond[a][b] = beyond[a][b] * kept;
-            }
-        }
-        hermite::regularised::<L, V, Q>(excess, &after, &beyond)
+        let stress = flow::stress::<L, V, Q>(&f, excess, &before);
+        let kept = flow::scaled::<L, V, Q>(stress, -omega + T::one());
+        frame::regularised::<L, V, Q>(excess, &after, kept)
     }
 }

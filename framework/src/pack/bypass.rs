@@ -1,0 +1,150 @@
+//! Writing past the caches.
+//!
+//! A line that is written is read first, unless it is written past the caches, whole; and one that is not
+//! read again soon only drives out others. Where a step touches far more than the caches hold, copies of
+//! columns are half as fast again with it.
+
+use std::marker::PhantomData;
+
+use bytemuck::Pod;
+
+/// Makes what was written past the caches visible to others when it goes out of scope.
+pub(crate) struct Fence {
+    /// Bytes that this processor writes at once; `None` if it cannot, or it would not pay.
+    bytes: Option<usize>,
+}
+
+impl Fence {
+    pub fn new(pays: bool) -> Self {
+        Self { bytes: widest().filter(|_| pays) }
+    }
+
+    /// Leave to write past the caches inside this fence, if it pays.
+    pub fn bypass(&self) -> Option<Bypass<'_>> {
+        self.bytes.map(|bytes| Bypass { bytes, fence: PhantomData })
+    }
+}
+
+impl Drop for Fence {
+    fn drop(&mut self) {
+        #[cfg(target_arch = "x86_64")]
+        if self.bytes.is_some() {
+            // SAFETY: part of every x86-64.
+            unsafe { std::arch::x86_64::_mm_sfence() };
+        }
+    }
+}
+
+fn widest() -> Option<usize> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if is_x86_feature_detected!("avx512f") {
+            return Some(64);
+        }
+        if is_x86_feature_detected!("avx") {
+            return Some(32);
+        }
+    }
+    None
+}
+
+/// Leave to write past the caches, which a stage has while that pays ([`crate::Rates::bypass`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Bypass<'a> {
+    bytes: usize,
+    fence: PhantomData<&'a Fence>,
+}
+
+impl std::fmt::Debug for Fence {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Fence({:?})", self.bytes)
+    }
+}
+
+/// Rows of vectors that are written side by side, past the caches if there is leave to and the
+/// processor can.
+#[derive(Debug)]
+pub struct Targets<'a, V, const N: usize> {
+    to: [&'a mut [V]; N],
+    /// Vectors are as long as the processor writes at once, and aligned.
+    is_past: bool,
+}
+
+impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
+    /// Worth it past the caches only if whole lines are written, one vector after the other.
+    #[inline(always)]
+    pub fn new(to: [&'a mut [V]; N], bypass: Option<Bypass<'a>>) -> Self {
+        let mut is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>());
+        for to in &to {
+            is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
+        }
+        Self { to, is_past }
+    }
+
+    /// Writes vector `i` of every row.
+    ///
+    /// # Panics
+    /// If there is no such vector.
+    #[inline(always)]
+    pub fn write(&mut self, i: usize, values: [V; N]) {
+        #[cfg(target_arch = "x86_64")]
+        if self.is_past {
+            use std::arch::x86_64::{__m256i, __m512i, _mm256_stream_si256, _mm512_stream_si512};
+            for n in 0..N {
+                let to = std::ptr::from_mut(&mut self.to[n][i]);
+                // SAFETY: `new` saw leave for as many bytes as a vector has, which there is only on
+                // processors with these instructions, and that vectors are aligned. This one is borrowed
+                // exclusively, and plain bytes. Other threads see it only after the fence, which outlives
+                // `self`; to this one such writes are in order.
+                unsafe {
+                    match size_of::<V>() {
+                        64 => _mm512_stream_si512(to.cast::<__m512i>(), bytemuck::cast(values[n])),
+                        32 => _mm256_stream_si256(to.cast::<__m256i>(), bytemuck::cast(values[n])),
+                        _ => to.write(values[n]),
+                    }
+                }
+            }
+            return;
+        }
+        for n in 0..N {
+            self.to[n][i] = values[n];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever the size and place, what is written is there.
+    #[test]
+    fn what_is_written_past_the_caches_is_there() {
+        fn check<V: Pod + PartialEq + std::fmt::Debug>(value: V) {
+            #[repr(C, align(64))]
+            #[derive(Clone, Copy)]
+            struct Lines([u8; 256]);
+            for pays in [false, true] {
+                let mut lines = Lines([7; 256]);
+                let size = size_of::<V>();
+                let fence = Fence::new(pays);
+                assert!(pays || fence.bypass().is_none());
+                let places = bytemuck::cast_slice_mut::<u8, V>(&mut lines.0[size..]);
+                let count = places.len();
+                let mut targets = Targets::new([places], fence.bypass());
+                for i in 0..count {
+                    targets.write(i, [value]);
+                }
+                drop(fence);
+                assert!(lines.0[..size].iter().all(|&b| b == 7));
+                assert!(
+                    bytemuck::cast_slice::<u8, V>(&lines.0[size..]).iter().all(|v| *v == value)
+                );
+            }
+        }
+        check([1.5f64; 8]);
+        check([2.5f32; 8]);
+        check([2.5f64; 4]);
+        check([3.5f64; 2]);
+        check(4.5f64);
+    }
+}

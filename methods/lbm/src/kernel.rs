@@ -1,0 +1,232 @@
+//! The collision of packs of sites: all that is compiled for every collision and instruction set.
+
+use std::marker::PhantomData;
+
+use finegrain_framework::Real;
+use finegrain_framework::pack::{Bypass, Pack, Targets, prefetch};
+
+use crate::collision::Collide;
+use crate::lattice::Lattice;
+use crate::relaxation::Relaxation;
+use crate::row::none;
+
+/// Packs between the one that is collided and the one that memory is asked for.
+const AHEAD: usize = 6;
+
+/// Acceleration of each site, in each direction, if it varies.
+pub(crate) type Varying<'a, T> = Option<[&'a [T]; 3]>;
+
+/// Collides sites next to one another, as many as make whole packs.
+pub(crate) trait Collider<T, const Q: usize>: Send + Sync {
+    /// From the populations that arrive to those that leave, elsewhere in memory.
+    fn pull(
+        &self,
+        from: &[&[T]; Q],
+        to: [&mut [T]; Q],
+        acceleration: Varying<'_, T>,
+        bypass: Option<Bypass<'_>>,
+    );
+
+    /// In place, where what leaves takes the place of what arrived from there: that of the opposite
+    /// velocity.
+    fn exchange(&self, slots: [&mut [T]; Q], acceleration: Varying<'_, T>);
+}
+
+/// The collision of a lattice.
+pub(crate) struct Kernel<L, C> {
+    pub lattice: PhantomData<L>,
+    pub collision: C,
+    pub relaxation: Relaxation,
+    /// Acceleration where it does not vary, in lattice units.
+    pub uniform: [f64; 3],
+}
+
+impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Collider<T, Q> for Kernel<L, C> {
+    fn pull(
+        &self,
+        from: &[&[T]; Q],
+        to: [&mut [T]; Q],
+        acceleration: Varying<'_, T>,
+        bypass: Option<Bypass<'_>>,
+    ) {
+        let memory = Apart { from, to, bypass };
+        pulp::Arch::new().dispatch(Task { kernel: self, memory, acceleration });
+    }
+
+    fn exchange(&self, slots: [&mut [T]; Q], acceleration: Varying<'_, T>) {
+        let memory = InPlace { slots };
+        pulp::Arch::new().dispatch(Task { kernel: self, memory, acceleration });
+    }
+}
+
+/// Where populations arrive, and leave from.
+trait Memory<T: Real, const Q: usize> {
+    /// The same in packs.
+    type Packs<V: Pack<Scalar = T>>: Slots<V, Q>;
+    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> Self::Packs<V>;
+}
+
+/// Packs of populations that arrive, and leave.
+trait Slots<V: Pack, const Q: usize> {
+    /// Number of packs.
+    fn count(&self) -> usize;
+    /// The populations that have arrived at pack `i`.
+    fn arrived(&self, i: usize) -> [V::Vector; Q];
+    /// Leaves those after the collision where they go on from.
+    fn leave(&mut self, i: usize, f: [V; Q]);
+}
+
+/// Two sets of columns.
+struct Apart<'a, 'b, T, const Q: usize> {
+    from: &'b [&'a [T]; Q],
+    to: [&'a mut [T]; Q],
+    bypass: Option<Bypass<'a>>,
+}
+
+impl<'a, T: Real, const Q: usize> Memory<T, Q> for Apart<'a, '_, T, Q> {
+    type Packs<V: Pack<Scalar = T>> = ApartPacks<'a, V, Q>;
+
+    #[inline(always)]
+    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> ApartPacks<'a, V, Q> {
+        let mut from: [&[V::Vector]; Q] = [&[]; Q];
+        for q in 0..Q {
+            from[q] = V::packs(simd, self.from[q]);
+        }
+        let mut to = none::<V::Vector, Q>();
+        for (packs, row) in to.iter_mut().zip(self.to) {
+            *packs = V::packs_mut(simd, row);
+        }
+        ApartPacks { from, to: Targets::new(to, self.bypass) }
+    }
+}
+
+struct ApartPacks<'a, V: Pack, const Q: usize> {
+    from: [&'a [V::Vector]; Q],
+    to: Targets<'a, V::Vector, Q>,
+}
+
+impl<V: Pack, const Q: usize> Slots<V, Q> for ApartPacks<'_, V, Q> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.from[0].len()
+    }
+
+    #[inline(always)]
+    fn arrived(&self, i: usize) -> [V::Vector; Q] {
+        let mut f = [self.from[0][i]; Q];
+        for q in 0..Q {
+            prefetch(self.from[q], i + AHEAD);
+            f[q] = self.from[q][i];
+        }
+        f
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, i: usize, f: [V; Q]) {
+        let mut vectors = [f[0].vector(); Q];
+        for q in 0..Q {
+            vectors[q] = f[q].vector();
+        }
+        self.to.write(i, vectors);
+    }
+}
+
+/// One set of columns.
+struct InPlace<'a, T, const Q: usize> {
+    slots: [&'a mut [T]; Q],
+}
+
+impl<'a, T: Real, const Q: usize> Memory<T, Q> for InPlace<'a, T, Q> {
+    type Packs<V: Pack<Scalar = T>> = InPlacePacks<'a, V, Q>;
+
+    #[inline(always)]
+    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> InPlacePacks<'a, V, Q> {
+        let mut slots = none::<V::Vector, Q>();
+        for (packs, row) in slots.iter_mut().zip(self.slots) {
+            *packs = V::packs_mut(simd, row);
+        }
+        InPlacePacks { slots }
+    }
+}
+
+struct InPlacePacks<'a, V: Pack, const Q: usize> {
+    slots: [&'a mut [V::Vector]; Q],
+}
+
+impl<V: Pack, const Q: usize> Slots<V, Q> for InPlacePacks<'_, V, Q> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.slots[0].len()
+    }
+
+    #[inline(always)]
+    fn arrived(&self, i: usize) -> [V::Vector; Q] {
+        let mut f = [self.slots[0][i]; Q];
+        for q in 0..Q {
+            prefetch(self.slots[q], i + AHEAD);
+            f[q] = self.slots[q][i];
+        }
+        f
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, i: usize, f: [V; Q]) {
+        self.slots[0][i] = f[0].vector();
+        for n in 0..Q / 2 {
+            let (q, back) = (2 * n + 1, 2 * n + 2);
+            self.slots[q][i] = f[back].vector();
+            self.slots[back][i] = f[q].vector();
+        }
+    }
+}
+
+/// A collision, to be compiled for every instruction set.
+struct Task<'a, T, L, C, M, const Q: usize> {
+    kernel: &'a Kernel<L, C>,
+    memory: M,
+    acceleration: Varying<'a, T>,
+}
+
+impl<T: Real, L: Lattice<Q>, C: Collide<T>, M: Memory<T, Q>, const Q: usize> pulp::WithSimd
+    for Task<'_, T, L, C, M, Q>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Self { kernel, memory, acceleration } = self;
+        kernel.collide::<T::Pack<S>, M, Q>(simd, memory, acceleration);
+    }
+}
+
+impl<L, C> Kernel<L, C> {
+    #[inline(always)]
+    fn collide<V: Pack, M: Memory<V::Scalar, Q>, const Q: usize>(
+        &self,
+        simd: V::Simd,
+        memory: M,
+        acceleration: Varying<'_, V::Scalar>,
+    ) where
+        L: Lattice<Q>,
+        C: Collide<V::Scalar>,
+    {
+        let [x, y, z] = self.uniform.map(V::Scalar::of);
+        let uniform = [V::splat(simd, x), V::splat(simd, y), V::splat(simd, z)];
+        let mut slots = memory.packs::<V>(simd);
+        for i in 0..slots.count() {
+            let vectors = slots.arrived(i);
+            let mut f = [uniform[0]; Q];
+            for q in 0..Q {
+                f[q] = V::of(simd, vectors[q]);
+            }
+            let mut here = uniform;
+            if let Some(varying) = acceleration {
+                for a in 0..L::DIMS {
+                    here[a] = V::of(simd, V::packs(simd, varying[a])[i]);
+                }
+            }
+            let omega = self.relaxation.rate::<L, V, Q>(&f);
+            slots.leave(i, self.collision.collide::<L, V, Q>(f, here, omega));
+        }
+    }
+}
