@@ -100,6 +100,9 @@ pub static COMPARISONS: [Comparison; 8] = [
             Line::new("lbm", &[16, 32, 64, 128, 256]).single(),
             Line::new("lbm", &[32, 64, 128, 256]).peer_to_peer(),
             Line::new("lbm", &[16, 32, 64, 128]).with("Mach 0.0125", &[("mach", "0.0125")]),
+            Line::new("fd", &[16, 32, 64, 128, 256]),
+            Line::new("fd", &[16, 32, 64, 128, 256]).with("order 2", &[("order", "2")]),
+            Line::new("fd", &[16, 32, 64, 128]).single(),
         ],
     },
     Comparison {
@@ -116,6 +119,7 @@ pub static COMPARISONS: [Comparison; 8] = [
             Line::new("lbm", &[8, 16, 32, 64, 128]),
             Line::new("lbm", &[8, 16, 32, 64, 128]).with("bgk", &[("collision", "bgk")]),
             Line::new("lbm", &[8, 16, 32, 64, 128]).single(),
+            Line::new("fd", &[8, 16, 32, 64, 128]),
         ],
     },
     Comparison {
@@ -152,6 +156,7 @@ pub static COMPARISONS: [Comparison; 8] = [
             Line::new("lbm", &[16, 32, 64, 128]),
             Line::new("lbm", &[16, 32, 64, 128]).with("trt", &[("collision", "trt")]),
             Line::new("lbm", &[16, 32, 64, 128]).single(),
+            Line::new("fd", &[16, 32, 64, 128]),
         ],
     },
     Comparison {
@@ -168,6 +173,7 @@ pub static COMPARISONS: [Comparison; 8] = [
             Line::new("lbm", &[32, 64, 128, 256]),
             Line::new("lbm", &[32, 64, 128, 256]).with("trt", &[("collision", "trt")]),
             Line::new("lbm", &[32, 64, 128, 256]).single(),
+            Line::new("fd", &[32, 64, 128, 256]),
         ],
     },
     Comparison {
