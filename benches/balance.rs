@@ -61,7 +61,7 @@ fn main() -> Result<(), Error> {
 
 /// Seconds a step of a run, and the share of the workers' time that they waited.
 fn run(schedule: Schedule, workers: usize) -> Result<(f64, f64), Error> {
-    let scene = Scene::find("dam-break").ok_or("no such scene")?;
+    let scene = Scene::find("dam-break")?;
     let parameters = scene.set_for(Some("sph"), [("resolution", RESOLUTION)])?;
     let folder = tempfile::tempdir()?;
     let orders = Orders {

@@ -112,10 +112,7 @@ impl<T: Real> Case<T> {
                 let mut around = around.iter();
                 for candidate in seen(&runs) {
                     let is_it = |&at: &(usize, [u64; 3])| at == candidate;
-                    assert!(
-                        around.any(|at| is_it(at)),
-                        "around in the order in which a cell sees them"
-                    );
+                    assert!(around.any(is_it), "around in the order in which a cell sees them");
                 }
                 points += cell.span.len();
                 all.push((id, cell.span, runs));
