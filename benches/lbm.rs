@@ -1,7 +1,8 @@
 //! Lattice Boltzmann on a periodic cube: million site updates a second of whole steps, beside what the memory
 //! allows: copies of as many columns, and updates of them in place.
 //!
-//! `cargo bench --bench lbm -- [sites along a side] [samples]`; `benches/lbmpy/compare.py` runs it beside lbmpy.
+//! `cargo bench --bench lbm -- [sites along a side] [samples] [short]`; `benches/lbmpy/compare.py` runs it in
+//! turns with lbmpy.
 
 mod samples;
 
@@ -43,6 +44,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let trt = Collision::Trt { magic: 3.0 / 16.0 };
     compare::<f64>(LatticeKind::D3Q19, Collision::CentralMoments, workers, extent)?;
     compare::<f32>(LatticeKind::D3Q19, Collision::CentralMoments, workers, extent)?;
+    if std::env::args().any(|a| a == "short") {
+        return Ok(());
+    }
     for (lattice, collision) in [
         (LatticeKind::D3Q19, trt),
         (LatticeKind::D3Q19, Collision::Bgk),

@@ -229,3 +229,51 @@ fn leave(opening: &Opening, here: State, inside: State, target: f64, rate: f64) 
     later[axis] -= outward * (leaving - entering) / (2.0 * density * sound);
     (excess - (leaving + entering) / (2.0 * SOUND_SPEED_SQUARED), later)
 }
+
+#[cfg(test)]
+mod tests {
+    use finegrain_framework::pack::PackF64;
+
+    use super::*;
+    use crate::collision::{Collide, Trt};
+    use crate::lattice::D3Q19;
+
+    /// A wave of sound that leaves with the flow goes out at the speed of both together, unchanged.
+    #[test]
+    fn sound_leaves_with_the_flow() {
+        let sound = SOUND_SPEED_SQUARED.sqrt();
+        for is_upper in [false, true] {
+            let condition = Condition::Pressure(0.0);
+            let opening = Opening { axis: Axis::Y, is_upper, condition };
+            let outward = -f64::from(opening.inward());
+            for flow in [-0.05, 0.0, 0.1] {
+                let (density, rise) = (1.02, 1e-3);
+                let change = sound * rise / density;
+                let here = (density - 1.0, [0.03, outward * flow, 0.0]);
+                let inside = (density - 1.0 - rise, [0.03, outward * (flow - change), 0.0]);
+                let (excess, velocity) = leave(&opening, here, inside, 0.0, 0.0);
+                let speed = flow + sound;
+                assert!((excess - (here.0 - speed * rise)).abs() < 1e-16);
+                assert!((outward * velocity[1] - (flow - speed * change)).abs() < 1e-16);
+                assert_eq!([velocity[0], velocity[2]], [0.03, 0.0]);
+            }
+        }
+    }
+
+    /// The velocity in the middle of the collision is the same seen from before it and from after.
+    #[test]
+    fn the_velocity_after_a_collision_has_half_of_the_force() {
+        let acceleration = [0.003, -0.002, 0.001];
+        let before: [f64; 19] = std::array::from_fn(|q| 0.01 * (1.7 * q as f64).sin());
+        let pack = |x: f64| PackF64::splat(Scalar, x);
+        let after = Trt { magic: None }
+            .collide::<D3Q19, _, 19>(before.map(pack), acceleration.map(pack), pack(1.3))
+            .map(Pack::vector);
+        let without = after_collision::<D3Q19, _, 19>(&before, &[0.0; 3]);
+        let (excess, velocity) = after_collision::<D3Q19, _, 19>(&after, &acceleration);
+        assert!((excess - without.0).abs() < 1e-15);
+        for a in 0..3 {
+            assert!((velocity[a] - (without.1[a] + 0.5 * acceleration[a])).abs() < 1e-15);
+        }
+    }
+}
