@@ -28,7 +28,7 @@ pub(crate) const fn kept(c: [i32; 3], q: usize) -> [i32; 3] {
 
 /// Where the population of velocity `q` is that arrives at a site.
 const fn found(c: [i32; 3], q: usize) -> [i32; 3] {
-    if q.is_multiple_of(2) { [-c[0], -c[1], -c[2]] } else { [0; 3] }
+    if q % 2 == 1 { [0; 3] } else { [-c[0], -c[1], -c[2]] }
 }
 
 /// Offsets in y and z with which columns are owned: those of [`InPlace::shifts`].
