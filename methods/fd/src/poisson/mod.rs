@@ -94,12 +94,14 @@ impl<T: Compiled> Solver<T> {
     }
 }
 
-/// Fills `rows` with columns of a matrix of `[rows, columns]`, from column `first` on.
+/// Fills `to` with columns of a matrix of `[rows, columns]`, from column `first` on. A few rows at a time, for the
+/// elements of a column are a power of two apart where meshes are, and such lines push each other out of the cache.
 fn transpose<T: Copy>(matrix: &[T], [rows, columns]: [usize; 2], first: usize, to: &mut [T]) {
-    let count = to.len() / rows;
-    for (r, row) in matrix.chunks_exact(columns).enumerate() {
-        for (c, &value) in row[first..first + count].iter().enumerate() {
-            to[c * rows + r] = value;
+    const ROWS: usize = 8;
+    for (n, band) in matrix.chunks(ROWS * columns).enumerate() {
+        for (c, to) in to.chunks_exact_mut(rows).enumerate() {
+            let to = to[n * ROWS..].iter_mut();
+            to.zip(band[first + c..].iter().step_by(columns)).for_each(|(to, &value)| *to = value);
         }
     }
 }
