@@ -261,7 +261,7 @@ mod tests {
     #[test]
     fn no_worker_does_two_things_at_once_and_nothing_begins_too_early() {
         let costs: Vec<f64> = (0..50).map(|i| 1.0 + f64::from(i * 37 % 11)).collect();
-        let (all, largest) = (2.0 * costs.iter().sum::<f64>(), 24.0);
+        let (all, largest) = (2.0 * costs.iter().sum::<f64>(), 2.0 * 11.0);
         let load = ring(costs);
         for schedule in OURS {
             let mut before = f64::INFINITY;
