@@ -59,7 +59,11 @@ impl Survey {
     }
 
     fn who_is_cheapest(&self, comparison: &Comparison, tolerance: f64) -> String {
-        let methods = methods(comparison);
+        let was_run = |method: &&str| {
+            let mut lines = comparison.lines.iter().filter(|line| line.method == *method);
+            lines.any(|line| !self.of(comparison, line).is_empty())
+        };
+        let methods: Vec<_> = methods(comparison).into_iter().filter(was_run).collect();
         let reached = |method: &&str| self.cheapest_of(comparison, method, tolerance);
         let mut cheapest: Vec<_> = methods.iter().filter_map(reached).collect();
         cheapest.sort_by(|a, b| a.wall_s().total_cmp(&b.wall_s()));
