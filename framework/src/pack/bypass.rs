@@ -48,11 +48,12 @@ fn widest() -> Option<usize> {
     None
 }
 
-/// Leave to write past the caches, which a stage has while that pays ([`crate::Rates::bypass`]).
+/// Leave to write past the caches, which a stage has while that pays ([`crate::Rates::bypass`]). It does
+/// not leave its thread, as a fence is one of the thread that has written.
 #[derive(Clone, Copy, Debug)]
 pub struct Bypass<'a> {
     bytes: usize,
-    fence: PhantomData<&'a Fence>,
+    fence: PhantomData<(&'a Fence, *const ())>,
 }
 
 impl std::fmt::Debug for Fence {
@@ -62,12 +63,24 @@ impl std::fmt::Debug for Fence {
 }
 
 /// Rows of vectors that are written side by side, past the caches if there is leave to and the
-/// processor can.
+/// processor can. When it is dropped, what was written is visible to others.
 #[derive(Debug)]
 pub struct Targets<'a, V, const N: usize> {
     to: [&'a mut [V]; N],
     /// Vectors are as long as the processor writes at once, and aligned.
     is_past: bool,
+    fence: PhantomData<*const Fence>,
+}
+
+impl<V, const N: usize> Drop for Targets<'_, V, N> {
+    #[inline(always)]
+    fn drop(&mut self) {
+        #[cfg(target_arch = "x86_64")]
+        if self.is_past {
+            // SAFETY: part of every x86-64.
+            unsafe { std::arch::x86_64::_mm_sfence() };
+        }
+    }
 }
 
 impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
@@ -78,7 +91,7 @@ impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
         for to in &to {
             is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
         }
-        Self { to, is_past }
+        Self { to, is_past, fence: PhantomData }
     }
 
     /// Writes vector `i` of every row.
@@ -94,8 +107,9 @@ impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
                 let to = std::ptr::from_mut(&mut self.to[n][i]);
                 // SAFETY: `new` saw leave for as many bytes as a vector has, which there is only on
                 // processors with these instructions, and that vectors are aligned. This one is borrowed
-                // exclusively, and plain bytes. Other threads see it only after the fence, which outlives
-                // `self`; to this one such writes are in order.
+                // exclusively, and plain bytes. Nobody else sees it before the fence: that of `drop`, on
+                // this thread, which `self` does not leave, or, should `self` be forgotten, that at the
+                // end of the stage.
                 unsafe {
                     match size_of::<V>() {
                         64 => _mm512_stream_si512(to.cast::<__m512i>(), bytemuck::cast(values[n])),
@@ -134,6 +148,7 @@ mod tests {
                 for i in 0..count {
                     targets.write(i, [value]);
                 }
+                drop(targets);
                 drop(fence);
                 assert!(lines.0[..size].iter().all(|&b| b == 7));
                 assert!(

@@ -11,6 +11,7 @@ use crate::line::{Ends, Line};
 use crate::mesh::{AXES, Mesh, Spread};
 use crate::operator::face::Face;
 use crate::operator::sbp::Closure;
+use crate::operator::staggered::StaggeredOrder;
 use crate::operator::{Order, central, value};
 
 /// By how much a time step may exceed its limit: rounding of how it was computed.
@@ -84,12 +85,51 @@ pub(crate) fn decay_extent(integrator: Integrator) -> f64 {
     largest_factor(integrator, |angle| Complex64::from(-angle / PI))
 }
 
-/// The longest stable time step, s, of advection and diffusion by central differences together: along each axis waves
-/// oscillate at rates up to `turns` and decay at rates up to `decays`, 1/s, the first as the sine of an angle and the
-/// second as the square of that of half of it. In the plane of complex rates that is an ellipse an axis, and what all
-/// axes together come to lies in the sum of the ellipses, whose rim must be stable.
+/// How waves along an axis turn and decay, both over the most: the curve in the plane of complex rates
+/// `-decay + i turn` that the angle from 0 to pi traces, its other half being the mirror image.
+#[derive(Clone, Debug)]
+pub(crate) struct Symbol(Vec<[f64; 2]>);
+
+impl Symbol {
+    /// Of staggered central differences.
+    pub fn new(order: StaggeredOrder) -> Self {
+        const ANGLES: u32 = 360;
+        let angles = (0..=ANGLES).map(|k| PI * f64::from(k) / f64::from(ANGLES));
+        let of = |angle: f64| match order {
+            StaggeredOrder::Second => [angle.sin(), 0.5 * (1.0 - angle.cos())],
+            StaggeredOrder::Fourth => {
+                let turn = 9.0 / 8.0 * angle.sin() - (3.0 * angle).sin() / 24.0;
+                let decay = 2.5 - 8.0 / 3.0 * angle.cos() + (2.0 * angle).cos() / 6.0;
+                [turn / (7.0 / 6.0), decay / (16.0 / 3.0)]
+            }
+        };
+        Self(angles.map(of).collect())
+    }
+
+    /// The point furthest in the direction `(nx, ny)`, `ny` not below 0, where waves turn at rates up to
+    /// `turn` and decay at rates up to `decay`.
+    fn furthest(&self, turn: f64, decay: f64, nx: f64, ny: f64) -> Complex64 {
+        if turn == 0.0 && decay == 0.0 {
+            return Complex64::ZERO;
+        }
+        let (mut most, mut furthest) = (f64::NEG_INFINITY, Complex64::ZERO);
+        for &[y, x] in &self.0 {
+            let at = Complex64::new(-decay * x, turn * y);
+            let distance = at.re * nx + at.im * ny;
+            if distance > most {
+                (most, furthest) = (distance, at);
+            }
+        }
+        furthest
+    }
+}
+
+/// The longest stable time step, s, of advection and diffusion by central differences together: along
+/// each axis waves oscillate at rates up to `turns` and decay at rates up to `decays`, 1/s. What all axes
+/// together come to lies in the sum of their symbols' hulls, whose rim must be stable.
 pub(crate) fn advection_diffusion_limit(
     integrator: Integrator,
+    symbol: &Symbol,
     turns: [f64; 3],
     decays: [f64; 3],
 ) -> f64 {
@@ -99,12 +139,8 @@ pub(crate) fn advection_diffusion_limit(
             // Directions lie closer about that of the origin, which the rim only touches.
             let closer = 0.5 * (1.0 - (PI * k as f64 / RIM as f64).cos());
             let (ny, nx) = (PI * closer).sin_cos();
-            let points = turns.iter().zip(&decays).map(|(&turn, &decay)| {
-                let (x, y) = (0.25 * decay * decay * nx, turn * turn * ny);
-                let length = (x * nx + y * ny).sqrt().max(f64::MIN_POSITIVE);
-                Complex64::new(x / length - 0.5 * decay, y / length)
-            });
-            points.sum()
+            let points = turns.iter().zip(&decays);
+            points.map(|(&turn, &decay)| symbol.furthest(turn, decay, nx, ny)).sum()
         })
         .collect();
     let largest = rim.iter().map(|rate| rate.norm()).fold(f64::MIN_POSITIVE, f64::max);
@@ -315,7 +351,10 @@ mod tests {
     /// Euler's method `2 nu / u^2` if that is less (Hindmarsh, Gresho & Griffiths 1984, Int. J. Numer. Methods Fluids 4).
     #[test]
     fn advection_and_diffusion_are_stable_up_to_what_is_known() {
-        let limit = advection_diffusion_limit;
+        let second = Symbol::new(StaggeredOrder::Second);
+        let limit = |integrator, turns, decays| {
+            advection_diffusion_limit(integrator, &second, turns, decays)
+        };
         let still = limit(Integrator::Rk4, [0.0; 3], [3.0, 5.0, 0.0]);
         close(still, 2.7853 / 8.0, 1e-4);
         close(limit(Integrator::Rk4, [3.0, 0.0, 5.0], [1e-9; 3]), 8f64.sqrt() / 8.0, 1e-3);
@@ -334,6 +373,53 @@ mod tests {
             let mesh = Mesh::new([Side::periodic(20, 0.0, 1.0), Side::periodic(40, 0.0, 1.0)]);
             let radius = laplacian_radius(&mesh, order, &boundary).unwrap();
             close(radius, expected * (400.0 + 1600.0), 1e-12);
+        }
+    }
+
+    /// Waves of all angles, by the differences themselves.
+    #[test]
+    fn at_the_limit_of_advection_and_diffusion_no_wave_grows() {
+        let differences = |order: StaggeredOrder, angle: f64| {
+            let wave = |steps: f64| Complex64::from_polar(1.0, steps * angle);
+            match order {
+                StaggeredOrder::Second => (
+                    0.5 * (wave(1.0) - wave(-1.0)),
+                    (wave(1.0) - 2.0 + wave(-1.0)).re / 4.0,
+                    [1.0, 1.0],
+                ),
+                StaggeredOrder::Fourth => (
+                    9.0 / 16.0 * (wave(1.0) - wave(-1.0)) - (wave(3.0) - wave(-3.0)) / 48.0,
+                    (-wave(2.0) + 16.0 * wave(1.0) - 30.0 + 16.0 * wave(-1.0) - wave(-2.0)).re
+                        / 12.0,
+                    [7.0 / 6.0, 16.0 / 3.0],
+                ),
+            }
+        };
+        for order in [StaggeredOrder::Second, StaggeredOrder::Fourth] {
+            let symbol = Symbol::new(order);
+            for integrator in [Integrator::Rk2, Integrator::SspRk3, Integrator::Rk4] {
+                for decay in [0.01, 0.1, 0.3, 1.0, 3.0, 30.0] {
+                    for across in [0.0, 0.7] {
+                        let (turns, decays) = ([1.0, across, 0.0], [decay, across * decay, 0.0]);
+                        let dt = advection_diffusion_limit(integrator, &symbol, turns, decays);
+                        let mut most = [0.0f64; 2];
+                        let angle = |k: u32| 2.0 * PI * f64::from(k) / 90.0;
+                        for (k, l) in (0..90).flat_map(|k| (0..90).map(move |l| (k, l))) {
+                            let rate = |angle: f64, share: f64| {
+                                let (turn, decays, most) = differences(order, angle);
+                                share * (turn / most[0] + decay * decays / most[1])
+                            };
+                            let rate = rate(angle(k), 1.0) + rate(angle(l), across);
+                            for (most, dt) in most.iter_mut().zip([dt, 1.1 * dt]) {
+                                *most = most.max(amplification(integrator, rate * dt));
+                            }
+                        }
+                        let case = format!("{order:?} {integrator:?} {decay} {across}");
+                        assert!(most[0] <= 1.0 + 1e-4, "{case}: {most:?}");
+                        assert!(most[1] > 1.0 + 1e-4, "{case}: {most:?}, the limit is not tight");
+                    }
+                }
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use finegrain_framework::format::AtomicFile;
-use finegrain_framework::{Schedule, Workload};
+use finegrain_framework::{PartCost, Schedule, Workload};
 
 use super::forecast::{Overheads, seconds_per_step};
 use crate::bench::overheads;
@@ -131,8 +131,13 @@ impl Scaling {
             let together = plan.workload(schedule, workers)?;
             forecasts.extend((0..).map(|k| 1 << k).take_while(|&n| n <= MOST).filter_map(|n| {
                 let load = if n == 1 { &alone } else { &together };
-                let load =
-                    Workload { between: between(&alone, &together, workers, n), ..load.clone() };
+                let mut load = load.clone();
+                load.between = with_workers(alone.between, together.between, workers, n);
+                for (part, one) in load.parts.iter_mut().zip(&alone.parts) {
+                    if let (PartCost::Whole(cost), PartCost::Whole(alone)) = (part, one) {
+                        *cost = with_workers(*alone, *cost, workers, n);
+                    }
+                }
                 let seconds = seconds_per_step(&load, schedule, n, &overheads)? + load.between;
                 let brought =
                     if schedule == Schedule::PeerToPeer { load.steps_per_leg } else { 1.0 };
@@ -190,15 +195,15 @@ fn cases(most: usize) -> impl Iterator<Item = (Schedule, usize)> {
         .flat_map(|workers| SCHEDULES.into_iter().map(move |schedule| (schedule, workers)))
 }
 
-/// Time between legs with `n` workers, of which one part goes as many times as fast with them and the
-/// other does not: from what it takes with one and with `all` workers.
-fn between(alone: &Workload, together: &Workload, all: usize, n: usize) -> f64 {
+/// Time of whole-domain work with `n` workers, of which one share goes as many times as fast with them
+/// and the other does not: from what it takes with one and with `all` workers.
+fn with_workers(alone: f64, together: f64, all: usize, n: usize) -> f64 {
     if all == 1 {
-        return alone.between;
+        return alone;
     }
-    let shared = (alone.between - together.between) / (1.0 - 1.0 / all as f64);
-    let shared = shared.clamp(0.0, alone.between);
-    alone.between - shared + shared / n as f64
+    let shared = (alone - together) / (1.0 - 1.0 / all as f64);
+    let shared = shared.clamp(0.0, alone);
+    alone - shared + shared / n as f64
 }
 
 impl Plan {
@@ -218,5 +223,23 @@ impl Plan {
         let path = self.out.join(format!("trace-{schedule}-{workers}.json"));
         let report = self.run(schedule, workers, Some(path))?;
         report.workload.ok_or(SceneError::TooShort { steps: self.steps })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_domain_work_is_shared_as_far_as_it_was() {
+        // All of it, half of it, none.
+        let on_eight = |together| with_workers(1.0, together, 2, 8);
+        assert!((on_eight(0.5) - 0.125).abs() < 1e-12);
+        assert!((on_eight(0.75) - (0.5 + 0.0625)).abs() < 1e-12);
+        assert_eq!(on_eight(1.0), 1.0);
+        // Slower with more workers is not extrapolated, and what was measured comes back.
+        assert_eq!(on_eight(1.3), 1.0);
+        assert!((with_workers(1.0, 0.75, 2, 2) - 0.75).abs() < 1e-12);
+        assert_eq!(with_workers(1.0, 0.6, 1, 8), 1.0);
     }
 }

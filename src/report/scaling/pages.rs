@@ -33,7 +33,9 @@ impl Scaling {
             lead: "Filled markers are measured, the best of several runs. Open ones are a forecast: \
                    Dispatch simulated event by event with the measured cost of every part of every \
                    sub-domain and the measured cost of handing out and meeting. It supposes that every core brings its own \
-                   memory bandwidth; where all sharing this machine's would bind, a second line says so."
+                   memory bandwidth, and that a hand-out costs the same under every schedule. Where it takes \
+                   longer to pass all fields once through this machine's memory, once a step or, \
+                   peer-to-peer, a leg, a second line shows that: the best there can be."
                 .into(),
             body,
             command,

@@ -90,7 +90,7 @@ impl Survey {
         }
         let missing = methods.iter().filter(|method| reached(method).is_none());
         for method in missing {
-            said += &format!("; {} does not reach it", method.to_uppercase());
+            said += &format!("; {} does not reach it in what was run", method.to_uppercase());
         }
         said + "."
     }
@@ -222,7 +222,8 @@ mod tests {
         );
         assert_eq!(
             said[1],
-            "Within 0.1 %, the cheapest is LBM with 16 points across: 0.050 s; SPH does not reach it."
+            "Within 0.1 %, the cheapest is LBM with 16 points across: 0.050 s; SPH does not reach it in \
+             what was run."
         );
         assert_eq!(
             said[2],

@@ -8,11 +8,12 @@ use crate::mesh::{Mesh, Spread};
 use crate::model::Compiled;
 use crate::operator::staggered::StaggeredOrder;
 use crate::operator::{central, value};
-use crate::stability;
+use crate::stability::{self, Symbol};
 
 /// The longest stable time step.
 pub(super) struct Limit {
     integrator: Integrator,
+    symbol: Symbol,
     /// For each axis: of the wave that is carried fastest, the rate over the speed, 1/m.
     turn: [f64; 3],
     /// For each axis: the fastest decay by viscosity, 1/s.
@@ -36,6 +37,7 @@ impl Limit {
         let h = mesh.spacing();
         Self {
             integrator: equation.integrator,
+            symbol: Symbol::new(equation.order),
             turn: [0, 1, 2].map(|a| of_axis(a, turn / h[a])),
             decay: [0, 1, 2].map(|a| of_axis(a, equation.viscosity * second(a) / (h[a] * h[a]))),
         }
@@ -44,7 +46,7 @@ impl Limit {
     /// With components of the velocity up to `speeds`, m/s.
     pub fn of(&self, speeds: [f64; 3]) -> f64 {
         let turns = [0, 1, 2].map(|a| self.turn[a] * speeds[a]);
-        stability::advection_diffusion_limit(self.integrator, turns, self.decay)
+        stability::advection_diffusion_limit(self.integrator, &self.symbol, turns, self.decay)
     }
 }
 
