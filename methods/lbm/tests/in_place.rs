@@ -55,9 +55,7 @@ fn cavity(lattice: LatticeKind) -> (Mesh, Physics) {
 /// A channel along `axis`, in with a velocity and out to a pressure, around a post.
 fn channel(lattice: LatticeKind, axis: usize) -> (Mesh, Physics) {
     let across = 1 - axis;
-    let mut periodic = [false, false, true];
-    periodic[2] = true;
-    let mesh = mesh(lattice, periodic);
+    let mesh = mesh(lattice, [false, false, true]);
     let ends = [0, 1, 2].map(|a| mesh.shape[a] as f64 * mesh.spacing);
     let mut outward = [0.0; 3];
     outward[across] = 1.0;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use finegrain_framework::shape::{Axis, Shape};
-use finegrain_framework::{HandOut, Schedule, Settings, Simulation, VectorField};
+use finegrain_framework::{Domain, HandOut, Schedule, Settings, Simulation, VectorField};
 use finegrain_lbm::{
     Body, Collision, Compiled, Condition, Fluid, LatticeKind, Lbm, Mesh, Opening, Physics, Scheme,
     Start, Streaming, Wall,
@@ -12,18 +12,30 @@ use finegrain_lbm::{
 /// A wall that slides, a body across a periodic end, a force that varies, in place.
 fn in_place<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
     let (streaming, wall) = (Some(Streaming::InPlace), Wall::HalfWay);
-    between_walls(Scheme { collision, streaming, wall, ..Scheme::on(lattice) })
+    let depth = if lattice.dims() == 2 { 1 } else { 11 };
+    between_walls([45, 21, depth], Scheme { collision, streaming, wall, ..Scheme::on(lattice) })
+}
+
+/// The same where every row or two are a tile: on either side of a tile lie several others.
+fn in_many_tiles<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
+    let (streaming, wall) = (Some(Streaming::InPlace), Wall::HalfWay);
+    let scheme = Scheme { collision, streaming, wall, ..Scheme::on(lattice) };
+    let shape = if lattice.dims() == 2 { [2800, 13, 1] } else { [2800, 4, 4] };
+    let lbm = between_walls(shape, scheme);
+    assert!(lbm.model.domain.partition().len() >= 7);
+    lbm
 }
 
 /// Everything at once: walls that slide, a curved body across a periodic end, a force that varies.
 fn model<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
-    between_walls(Scheme { collision, ..Scheme::on(lattice) })
+    let depth = if lattice.dims() == 2 { 1 } else { 11 };
+    between_walls([45, 21, depth], Scheme { collision, ..Scheme::on(lattice) })
 }
 
-fn between_walls<T: Compiled>(scheme: Scheme) -> Lbm<T> {
-    let depth = if scheme.lattice.dims() == 2 { 1 } else { 11 };
+fn between_walls<T: Compiled>(shape: [usize; 3], scheme: Scheme) -> Lbm<T> {
+    let [length, height] = [shape[0], shape[1]].map(|n| 0.1 * n as f64);
     let mesh = Mesh {
-        shape: [45, 21, depth],
+        shape,
         corner: [0.0; 3],
         spacing: 0.1,
         time_step: 0.01,
@@ -31,7 +43,11 @@ fn between_walls<T: Compiled>(scheme: Scheme) -> Lbm<T> {
     };
     let fluid = Fluid { density: 2.0, kinematic_viscosity: 0.05, largest_speed: 0.5 };
     let wall = |y: f64, up: f64| Shape::HalfSpace { point: [0.0, y, 0.0], outward: [0.0, up, 0.0] };
-    let post = Shape::Cylinder { axis: Axis::Z, centre: [4.4, 1.0, 0.0], radius: 0.33 };
+    let post = Shape::Cylinder {
+        axis: Axis::Z,
+        centre: [length - 0.1, 0.5 * height - 0.05, 0.0],
+        radius: 0.33 * height / 2.1,
+    };
     let physics = Physics {
         body_acceleration: [0.1, 0.0, 0.0],
         acceleration_field: Some(VectorField::new(|[x, y, _], t| {
@@ -39,7 +55,7 @@ fn between_walls<T: Compiled>(scheme: Scheme) -> Lbm<T> {
         })),
         bodies: vec![
             wall(0.03, 1.0).into(),
-            Body { shape: wall(2.08, -1.0), surface_velocity: [0.3, 0.0, 0.0] },
+            Body { shape: wall(height - 0.02, -1.0), surface_velocity: [0.3, 0.0, 0.0] },
             post.into(),
         ],
         ..Physics::default()
@@ -50,6 +66,19 @@ fn between_walls<T: Compiled>(scheme: Scheme) -> Lbm<T> {
 
 /// A channel with an inlet that varies, an outlet that is open to waves, and eddies.
 fn channel<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
+    let outlet = Condition::NonReflecting { pressure: 0.01, relaxation: 0.1 };
+    with_open_ends(outlet, Scheme { collision, ..Scheme::on(lattice) })
+}
+
+/// The same with an outlet that in-place streaming covers.
+fn open_in_place<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
+    let (streaming, wall) = (Some(Streaming::InPlace), Wall::HalfWay);
+    let scheme = Scheme { collision, streaming, wall, ..Scheme::on(lattice) };
+    with_open_ends(Condition::Pressure(0.01), scheme)
+}
+
+fn with_open_ends<T: Compiled>(outlet: Condition, scheme: Scheme) -> Lbm<T> {
+    let lattice = scheme.lattice;
     let depth = if lattice.dims() == 2 { 1 } else { 11 };
     let mesh = Mesh {
         shape: [45, 21, depth],
@@ -61,7 +90,6 @@ fn channel<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
     let fluid = Fluid { density: 2.0, kinematic_viscosity: 0.01, largest_speed: 0.5 };
     let wall = |y: f64, up: f64| Shape::HalfSpace { point: [0.0, y, 0.0], outward: [0.0, up, 0.0] };
     let inlet = VectorField::new(|[_, y, _], t| [0.3 * y * (2.1 - y) * (1.0 + t).sin(), 0.0, 0.0]);
-    let outlet = Condition::NonReflecting { pressure: 0.01, relaxation: 0.1 };
     let opening = |is_upper, condition| Opening { axis: Axis::X, is_upper, condition };
     let post = Shape::Cylinder { axis: Axis::Z, centre: [2.0, 1.0, 0.0], radius: 0.33 };
     let physics = Physics {
@@ -69,7 +97,7 @@ fn channel<T: Compiled>(lattice: LatticeKind, collision: Collision) -> Lbm<T> {
         openings: vec![opening(false, Condition::Velocity(inlet)), opening(true, outlet)],
         ..Physics::default()
     };
-    let scheme = Scheme { collision, smagorinsky: Some(0.15), ..Scheme::on(lattice) };
+    let scheme = Scheme { smagorinsky: Some(0.15), ..scheme };
     Lbm::new(&mesh, &fluid, &physics, &scheme, &Start::default()).unwrap()
 }
 
@@ -115,6 +143,18 @@ fn streamed_in_place() {
 }
 
 #[test]
+fn streamed_in_place_in_many_tiles() {
+    same_bits::<f64>(in_many_tiles, LatticeKind::D2Q9, Collision::default());
+    same_bits::<f32>(in_many_tiles, LatticeKind::D3Q27, Collision::Bgk);
+}
+
+#[test]
+fn streamed_in_place_between_open_ends() {
+    same_bits::<f64>(open_in_place, LatticeKind::D2Q9, Collision::default());
+    same_bits::<f64>(open_in_place, LatticeKind::D3Q19, Collision::default());
+}
+
+#[test]
 fn in_single_precision() {
     same_bits::<f32>(model, LatticeKind::D3Q19, Collision::default());
     same_bits::<f32>(model, LatticeKind::D2Q9, Collision::Regularised);
@@ -130,7 +170,7 @@ fn in_a_channel_with_open_ends() {
 /// From a checkpoint written in the middle, with the populations in either set of columns.
 #[test]
 fn after_a_restart() {
-    for build in [model::<f64>, channel::<f64>, in_place::<f64>] {
+    for build in [model::<f64>, channel::<f64>, in_place::<f64>, open_in_place::<f64>] {
         restart(build);
     }
 }

@@ -96,7 +96,8 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for AdaptiveDensity<T
         let grad_h = rates.column(self.grad_h).whole();
         let density = near.state(self.density).own().whole();
         let solver = &self.solver;
-        scratch.surroundings.collect(&self.gathered, near, &block);
+        let range = solver.kernel.support() * solver.kernel.longest;
+        scratch.surroundings.collect(&self.gathered, near, &block, range);
         let written = [smoothing_length, grad_h];
         let solved = solver.write(density, written, scratch);
         solved.map_err(|(i, needed)| self.fault(near, i, needed))
@@ -139,7 +140,7 @@ impl<T: Real, const D: usize> Solver<T, D> {
         neighbours.prepare(&self.layout, surroundings.sees_bodies);
         for cell in 0..surroundings.cells.len() {
             let own = surroundings.cells[cell].clone();
-            surroundings.select(own.clone(), self.kernel.support() * self.kernel.longest);
+            surroundings.select(own.clone());
             for k in own {
                 let particle = surroundings.particle(&self.layout, k);
                 let guess = self.ratio * root::<T, D>(self.mass / density[k]);

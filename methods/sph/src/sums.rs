@@ -49,7 +49,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
         neighbours.prepare(&self.layout, surroundings.sees_bodies);
         for cell in 0..surroundings.cells.len() {
             let own = surroundings.cells[cell].clone();
-            surroundings.select(own.clone(), self.kernels.range());
+            surroundings.select(own.clone());
             let longest = match self.kernels {
                 Kernels::Uniform(_) => T::zero(),
                 Kernels::Adaptive(_) => {

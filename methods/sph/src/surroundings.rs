@@ -18,11 +18,14 @@ use crate::quantity::{Quantity, Values};
 #[derive(Clone, Debug)]
 pub(crate) struct Surroundings<T, const D: usize> {
     runs: Vec<Run>,
-    /// Where all are, from the centre of the sub-domain's own particles: to search among.
+    /// Where all are, from the centre of the sub-domain's own particles and in ranges of the
+    /// interaction, however long these are: to search among.
     places: [Buffer<f32>; D],
+    /// The range, m.
+    range: T,
     /// Where they are seen, less the origin.
     position: [Buffer<T>; D],
-    /// By how much a distance may come out longer than it is, in searching, m.
+    /// By how much a distance may come out longer than it is, in searching, in ranges.
     rounding: f32,
     /// The centre of the sub-domain's own particles where positions are more precise than the rest:
     /// what is rounded then is small. 0 where they are not.
@@ -44,6 +47,7 @@ impl<T: Real, const D: usize> Default for Surroundings<T, D> {
         Self {
             runs: Vec::new(),
             places: std::array::from_fn(|_| Buffer::default()),
+            range: T::one(),
             position: std::array::from_fn(|_| Buffer::default()),
             rounding: 0.0,
             origin: [0.0; D],
@@ -57,13 +61,16 @@ impl<T: Real, const D: usize> Default for Surroundings<T, D> {
 }
 
 impl<T: Real, const D: usize> Surroundings<T, D> {
-    /// Collects what the particles of `block` may see, positions as they are seen from there.
+    /// Collects what the particles of `block` may see, positions as they are seen from there, to search
+    /// for those within `range`, m.
     pub fn collect<P: Real>(
         &mut self,
         gathered: &Gathered<T, P>,
         near: &Near<'_, Cells<P>>,
         block: &CellBlock<'_, P>,
+        range: T,
     ) {
+        self.range = range;
         block.surroundings(&mut self.runs);
         let span = near.spans()[0];
         self.cells.clear();
@@ -118,6 +125,7 @@ impl<T: Real, const D: usize> Surroundings<T, D> {
     /// Notes where all particles are seen, of which there are `count`.
     fn see<P: Real>(&mut self, gathered: &Gathered<T, P>, near: &Near<'_, Cells<P>>, count: usize) {
         let mut furthest = 0.0f32;
+        let per_range = P::of(self.range.as_f64()).recip();
         for a in 0..D {
             let position = near.state(gathered.position[a]);
             let bounds = (P::infinity(), P::neg_infinity());
@@ -141,19 +149,19 @@ impl<T: Real, const D: usize> Surroundings<T, D> {
                     these_places.iter_mut().zip(these_positions).zip(values)
                 {
                     let seen = x + shift;
-                    *place = (seen - centre).as_f64() as f32;
+                    *place = ((seen - centre) * per_range).as_f64() as f32;
                     *position = T::of((seen - origin).as_f64());
                 }
             }
             furthest = furthest.max(largest_magnitude(&self.places[a]));
         }
         // Two places are rounded, and what is computed with them, by half a unit each time.
-        self.rounding = 6.0 * f32::EPSILON * furthest;
+        self.rounding = 8.0 * f32::EPSILON * furthest;
     }
 
-    /// Selects what lies within `range`, m, of the box around some of the sub-domain's own particles.
+    /// Selects what lies within range of the box around some of the sub-domain's own particles.
     #[inline(always)]
-    pub fn select(&mut self, own: Range<usize>, range: T) {
+    pub fn select(&mut self, own: Range<usize>) {
         let (mut lower, mut upper) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);
         for &i in &self.own[own] {
             for a in 0..D {
@@ -166,7 +174,7 @@ impl<T: Real, const D: usize> Surroundings<T, D> {
         for a in 0..D {
             places[a] = &self.places[a];
         }
-        let range = range.as_f64() as f32 + self.rounding;
+        let range = 1.0 + self.rounding;
         lanes::near_box(places, lower, upper, range * range, &mut self.near_cell);
     }
 
@@ -178,7 +186,7 @@ impl<T: Real, const D: usize> Surroundings<T, D> {
         for a in 0..D {
             centre[a] = self.places[a][particle.place];
         }
-        let radius = radius.as_f64() as f32 + self.rounding;
+        let radius = (radius / self.range).as_f64() as f32 + self.rounding;
         lanes::within(&self.near_cell, centre, radius * radius, found);
     }
 

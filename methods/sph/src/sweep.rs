@@ -108,7 +108,8 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for Sweep<T, P, D> {
             }
             return Ok(());
         }
-        scratch.surroundings.collect(&self.gathered, near, &block);
+        let range = self.sums.kernels.range();
+        scratch.surroundings.collect(&self.gathered, near, &block, range);
         self.sums.write(&mut written, scratch, moment.stage_time);
         Ok(())
     }

@@ -20,8 +20,9 @@ impl Survey {
         let body = html! {
             h2 { "Time to an error" }
             p.grey {
-                "The cheapest run of each method that stays within the error as all its finer runs do; \
-                 in brackets points across."
+                "The cheapest run of each method that stays within the error as all its finer runs do, of which \
+                 there is one at least; in brackets points across. What is not reached was not reached by \
+                 the runs that there was time for."
             }
             div.scroll { (self.times(&shown)) }
             @for comparison in &shown { (self.section(comparison)) }
@@ -67,7 +68,8 @@ impl Survey {
     fn time(&self, comparison: &Comparison, method: &str, tolerance: f64) -> String {
         match self.cheapest_of(comparison, method, tolerance) {
             Some(m) => format!("{} ({})", seconds(m.wall_s()), m.case.resolution),
-            None if methods(comparison).contains(&method) => "not reached".into(),
+            None if self.has_run(comparison, method) => "not reached".into(),
+            None if methods(comparison).contains(&method) => "not run".into(),
             None => "\u{2013}".into(),
         }
     }
