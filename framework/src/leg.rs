@@ -7,6 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, TryLockError};
 
+use crate::activity::Activities;
 use crate::clock::Clock;
 use crate::columns::{ColumnId, Columns, Role};
 use crate::domain::{Domain, Partition};
@@ -77,6 +78,7 @@ pub(crate) struct Desk {
     /// Per set of swapped pairs that occurs, the slots in that order.
     tables: Vec<(u64, Vec<Slot>)>,
     checked: Vec<ColumnId>,
+    pub activities: Activities,
 }
 
 impl Desk {
@@ -110,6 +112,7 @@ impl Desk {
                 .filter(|(_, c)| c.role() == Role::State)
                 .map(|(id, _)| id)
                 .collect(),
+            activities: Activities::new(workers),
         }
     }
 
@@ -218,7 +221,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         }
     }
 
-    fn place(&self, step: u64, entry: Option<usize>, id: usize) -> Place<'_, D> {
+    fn place(&self, worker: usize, step: u64, entry: Option<usize>, id: usize) -> Place<'_, D> {
         let odd = (step - self.stint.steps.start) % 2 == 1;
         let parity = if odd { self.step.swapped } else { 0 };
         let base = self.step.swapped_before_part(self.stint.parts.start);
@@ -236,6 +239,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             slots: &table.1,
             shifts,
             displaced: self.step.displaced,
+            activity: self.desk.activities.of(worker),
         }
     }
 
@@ -262,19 +266,20 @@ impl<'a, D: Domain> Leg<'a, D> {
         self.with_scratch(worker, |scratch| {
             for entry in self.step.part_start[part]..self.step.part_start[part + 1] {
                 at.set(entry);
-                self.run_entry(scratch, step, entry, sub_domain)?;
+                self.run_entry(worker, scratch, step, entry, sub_domain)?;
             }
             Ok::<_, Fault>(())
         })?;
         let is_checked = self.watch.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
         if is_checked && Some(part) == self.step.last_of_workers() {
-            self.check_finite(step, part, sub_domain)?;
+            self.check_finite(worker, step, part, sub_domain)?;
         }
         Ok(())
     }
 
     fn run_entry(
         &self,
+        worker: usize,
         scratch: &mut Scratch,
         step: u64,
         entry: usize,
@@ -282,7 +287,7 @@ impl<'a, D: Domain> Leg<'a, D> {
     ) -> Result<(), Fault> {
         let &Entry { stage, c, .. } = &self.step.entries[entry];
         let moment = self.clock.moment(step, c);
-        let place = self.place(step, Some(entry), sub_domain);
+        let place = self.place(worker, step, Some(entry), sub_domain);
         let scratch = scratch[stage].as_mut();
         let stage = &self.step.stages[stage];
         if stage.is_rate() {
@@ -294,7 +299,9 @@ impl<'a, D: Domain> Leg<'a, D> {
             let (near, mut rates) =
                 unsafe { (Near::new(place, writes), Rates::new(place, writes, fence.bypass())) };
             self.domain.check(&near)?;
-            stage.run_rate(&near, &mut rates, scratch, &moment)
+            let outcome = stage.run_rate(&near, &mut rates, scratch, &moment);
+            near.activity().begin(0);
+            outcome
         } else {
             // SAFETY: as above; in an update part everybody touches only what it owns.
             let mut own = unsafe { Own::new(place) };
@@ -302,10 +309,16 @@ impl<'a, D: Domain> Leg<'a, D> {
         }
     }
 
-    fn check_finite(&self, step: u64, part: usize, sub_domain: usize) -> Result<(), Cause> {
+    fn check_finite(
+        &self,
+        worker: usize,
+        step: u64,
+        part: usize,
+        sub_domain: usize,
+    ) -> Result<(), Cause> {
         let next = self.step.part_start[part + 1];
         let next = Some(next).filter(|&next| next < self.step.entries.len());
-        let place = self.place(step, next, sub_domain);
+        let place = self.place(worker, step, next, sub_domain);
         // SAFETY: as an update part; the workers' last part has just been run here, and what it owned is
         // looked at.
         let own = unsafe { Own::new(Place { shifts: &self.step.last_shifts, ..place }) };

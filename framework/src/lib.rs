@@ -70,6 +70,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![warn(missing_docs)]
+mod activity;
 pub mod checkpoint;
 pub mod clock;
 mod columns;
@@ -102,6 +103,7 @@ mod viewable;
 mod whole;
 mod workload;
 
+pub use activity::{Activities, Activity};
 pub use columns::*;
 pub use domain::*;
 pub use integrator::{Evolution, Integrator, Plan};

@@ -18,6 +18,7 @@ pub(crate) use saved::{Saved, column_block};
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use crate::activity::Activities;
 use crate::clock::Clock;
 use crate::columns::{Column, Columns, Role};
 use crate::domain::Domain;
@@ -113,6 +114,11 @@ impl<D: Domain> Simulation<D> {
     /// What the workers did last, if [`Settings::trace`] asks for it.
     pub fn trace(&self) -> Option<&Trace> {
         self.trace.as_ref()
+    }
+
+    /// What the workers are doing inside stages that say ([`crate::Near::activity`]).
+    pub fn activities(&self) -> Activities {
+        self.desk.activities.clone()
     }
 
     /// How it is run.

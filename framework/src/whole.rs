@@ -1,6 +1,7 @@
 //! Whole-domain work between parts: re-sorting, time step control, a linear solve, anything that needs to see or
 //! change everything at once. Named as a kind of its own because it is where workers meet.
 
+use crate::activity::UNWATCHED;
 use crate::columns::{ColumnSet, Columns};
 use crate::domain::Domain;
 use crate::stage::Fault;
@@ -56,7 +57,8 @@ impl<D: Domain> Whole<'_, D> {
         let (domain, slots) = (&*self.domain, &**slots);
         self.team.for_each_chunk(values, N, |id, values| {
             let (shifts, displaced) = (&[][..], ColumnSet::default());
-            let place = Place { domain, partition, id, slots, shifts, displaced };
+            let activity = &UNWATCHED;
+            let place = Place { domain, partition, id, slots, shifts, displaced, activity };
             // SAFETY: the partition is sealed and has as many points as the columns, which are
             // borrowed exclusively here; nobody writes any of them during the reduction.
             let near = unsafe { Near::new(place, ColumnSet::default()) };

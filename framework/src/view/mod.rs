@@ -30,6 +30,7 @@ pub use near::{Near, Reach, View};
 pub use own::{Own, Rates};
 pub use part::{Part, PartMut};
 
+use crate::activity::Activity;
 use crate::columns::{ColumnId, ColumnSet, Columns, Element, ElementKind};
 use crate::domain::{Partition, Span};
 
@@ -61,6 +62,8 @@ pub(crate) struct Place<'a, D> {
     pub shifts: &'a [(ColumnId, usize)],
     /// What has an offset somewhere in the step.
     pub displaced: ColumnSet,
+    /// What the worker that works on it is doing.
+    pub activity: &'a Activity,
 }
 
 impl<D> Clone for Place<'_, D> {

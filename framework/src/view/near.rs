@@ -4,6 +4,7 @@
 use std::marker::PhantomData;
 
 use super::{Part, Place};
+use crate::activity::Activity;
 use crate::columns::{ColumnSet, Element, Handle, Rate, State};
 use crate::domain::{Domain, Partition, Span};
 
@@ -64,6 +65,13 @@ impl<'a, D: Domain> Near<'a, D> {
     /// Its number.
     pub fn id(&self) -> usize {
         self.place.id
+    }
+
+    /// What the worker is doing: for stages that tell a sampler ([`Activities::sample`]).
+    ///
+    /// [`Activities::sample`]: crate::Activities::sample
+    pub fn activity(&self) -> &'a Activity {
+        self.place.activity
     }
 
     /// The points it owns.

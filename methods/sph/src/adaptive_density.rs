@@ -5,7 +5,8 @@
 
 use finegrain_framework::space::Cells;
 use finegrain_framework::{
-    ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, Stage, State,
+    Activity, ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, Stage,
+    State,
 };
 
 use crate::evaluation::{Alone, Piece};
@@ -15,6 +16,7 @@ use crate::kernel::adaptive::AdaptiveKernel;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::Quantity;
 use crate::surroundings::Surroundings;
+use crate::sweep_part::SweepPart;
 
 /// Most iterations for one particle; a few are usual.
 const MOST_ITERATIONS: usize = 100;
@@ -97,9 +99,10 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for AdaptiveDensity<T
         let density = near.state(self.density).own().whole();
         let solver = &self.solver;
         let range = solver.kernel.support() * solver.kernel.longest;
+        SweepPart::Collect.begin(near.activity());
         scratch.surroundings.collect(&self.gathered, near, &block, range);
         let written = [smoothing_length, grad_h];
-        let solved = solver.write(density, written, scratch);
+        let solved = solver.write(density, written, scratch, near.activity());
         solved.map_err(|(i, needed)| self.fault(near, i, needed))
     }
 }
@@ -125,8 +128,9 @@ impl<T: Real, const D: usize> Solver<T, D> {
         density: &[T],
         written: [&mut [T]; 2],
         scratch: &mut Scratch<T, D>,
+        activity: &Activity,
     ) -> Result<(), (usize, T)> {
-        pulp::Arch::new().dispatch(Task { solver: self, density, written, scratch })
+        pulp::Arch::new().dispatch(Task { solver: self, density, written, scratch, activity })
     }
 
     #[inline(always)]
@@ -135,16 +139,18 @@ impl<T: Real, const D: usize> Solver<T, D> {
         density: &[T],
         [smoothing_length, grad_h]: [&mut [T]; 2],
         scratch: &mut Scratch<T, D>,
+        activity: &Activity,
     ) -> Result<(), (usize, T)> {
         let Scratch { surroundings, neighbours, ones } = scratch;
         neighbours.prepare(&self.layout, surroundings.sees_bodies);
         for cell in 0..surroundings.cells.len() {
             let own = surroundings.cells[cell].clone();
+            SweepPart::Search.begin(activity);
             surroundings.select(own.clone());
             for k in own {
                 let particle = surroundings.particle(&self.layout, k);
                 let guess = self.ratio * root::<T, D>(self.mass / density[k]);
-                let solved = self.solve(surroundings, neighbours, ones, &particle, guess);
+                let solved = self.solve(surroundings, neighbours, ones, &particle, guess, activity);
                 (smoothing_length[k], grad_h[k]) = solved.map_err(|needed| (k, needed))?;
             }
         }
@@ -160,6 +166,7 @@ impl<T: Real, const D: usize> Solver<T, D> {
         ones: &mut Vec<T>,
         particle: &Particle<T, D>,
         guess: T,
+        activity: &Activity,
     ) -> Result<(T, T), T> {
         let longest = self.kernel.longest;
         let tolerance = T::epsilon().sqrt() * T::epsilon().sqrt().sqrt();
@@ -171,7 +178,9 @@ impl<T: Real, const D: usize> Solver<T, D> {
             if h > reach {
                 // A little further, for the iterations to come.
                 reach = (T::of(1.1) * h).min(longest);
-                neighbours.find(surroundings, particle, self.kernel.support() * reach);
+                let radius = self.kernel.support() * reach;
+                neighbours.find(surroundings, particle, radius, activity);
+                SweepPart::Kernel.begin(activity);
                 ones.resize(neighbours.distance_squared().len().max(ones.len()), T::one());
             }
             neighbours.evaluate(&self.kernel.at(h));
@@ -251,6 +260,7 @@ struct Task<'s, T: Real, const D: usize> {
     density: &'s [T],
     written: [&'s mut [T]; 2],
     scratch: &'s mut Scratch<T, D>,
+    activity: &'s Activity,
 }
 
 impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, T, D> {
@@ -258,6 +268,6 @@ impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, T, D> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
-        self.solver.run(self.density, self.written, self.scratch)
+        self.solver.run(self.density, self.written, self.scratch, self.activity)
     }
 }

@@ -2,14 +2,15 @@
 
 use std::ops::Index;
 
-use finegrain_framework::Real;
 use finegrain_framework::lanes::{Buffer, Found, RECORD};
+use finegrain_framework::{Activity, Real};
 
 use crate::gathered::{ABSENT, Layout};
 use crate::kernel::Kernel;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::{Quantity, Values, component};
 use crate::surroundings::Surroundings;
+use crate::sweep_part::SweepPart;
 use crate::wall::{Extrapolation, VelocityInBodies};
 
 /// The particle whose rates are wanted.
@@ -123,6 +124,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         particle: &Particle<T, D>,
         kernels: &Kernels<T, D>,
         longest: T,
+        activity: &Activity,
     ) {
         // One place where the kernel is evaluated: it is compiled for every smoothing function.
         let (kernel, radius) = match kernels {
@@ -132,7 +134,8 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
                 (kernel.at(own), kernel.support() * own.max(longest))
             }
         };
-        self.find(surroundings, particle, radius);
+        self.find(surroundings, particle, radius, activity);
+        SweepPart::Kernel.begin(activity);
         self.evaluate(&kernel);
         if let Kernels::Adaptive(kernel) = kernels {
             let (count, padded) = (self.found.len(), self.padded);
@@ -152,8 +155,11 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         surroundings: &Surroundings<T, D>,
         particle: &Particle<T, D>,
         radius: T,
+        activity: &Activity,
     ) {
+        SweepPart::Search.begin(activity);
         surroundings.find(particle, radius * Kernel::<T>::cut(), &mut self.found);
+        SweepPart::Gather.begin(activity);
         let padded = self.found.padded();
         self.padded = padded;
         if self.distance_squared.len() < padded {

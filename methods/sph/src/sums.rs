@@ -1,7 +1,7 @@
 //! The sums of a sweep over what was gathered: nothing here knows columns, or how precise positions
 //! are, so that it is compiled once for a scalar type.
 
-use finegrain_framework::Real;
+use finegrain_framework::{Activity, Real};
 
 use crate::gathered::Layout;
 use crate::imposed::Imposed;
@@ -9,6 +9,7 @@ use crate::kernel::adaptive::Kernels;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::{Quantity, Values};
 use crate::surroundings::Surroundings;
+use crate::sweep_part::SweepPart;
 use crate::term::{AnyTerm, Term, Work};
 use crate::wall::{Extrapolation, Friction};
 
@@ -39,16 +40,29 @@ impl<T: Real, const D: usize> Sums<T, D> {
     ///
     /// Not inlined, so that it is compiled once, and not again for every type of positions.
     #[inline(never)]
-    pub fn write(&self, written: &mut Written<'_, T>, scratch: &mut Scratch<T, D>, time: f64) {
-        pulp::Arch::new().dispatch(Task { sums: self, written, scratch, time });
+    pub fn write(
+        &self,
+        written: &mut Written<'_, T>,
+        scratch: &mut Scratch<T, D>,
+        time: f64,
+        activity: &Activity,
+    ) {
+        pulp::Arch::new().dispatch(Task { sums: self, written, scratch, time, activity });
     }
 
     #[inline(always)]
-    fn run(&self, written: &mut Written<'_, T>, scratch: &mut Scratch<T, D>, time: f64) {
+    fn run(
+        &self,
+        written: &mut Written<'_, T>,
+        scratch: &mut Scratch<T, D>,
+        time: f64,
+        activity: &Activity,
+    ) {
         let Scratch { surroundings, neighbours, work } = scratch;
         neighbours.prepare(&self.layout, surroundings.sees_bodies);
         for cell in 0..surroundings.cells.len() {
             let own = surroundings.cells[cell].clone();
+            SweepPart::Search.begin(activity);
             surroundings.select(own.clone());
             let longest = match self.kernels {
                 Kernels::Uniform(_) => T::zero(),
@@ -65,7 +79,8 @@ impl<T: Real, const D: usize> Sums<T, D> {
                     continue;
                 }
                 particle.no_slip = self.no_slip(&particle, surroundings);
-                neighbours.gather(surroundings, &particle, &self.kernels, longest);
+                neighbours.gather(surroundings, &particle, &self.kernels, longest, activity);
+                SweepPart::Terms.begin(activity);
                 let mut sums = self.sum(&particle, neighbours, work);
                 if let Some(imposed) = &self.imposed
                     && imposed.varies()
@@ -156,6 +171,7 @@ struct Task<'s, 'n, T: Real, const D: usize> {
     written: &'s mut Written<'n, T>,
     scratch: &'s mut Scratch<T, D>,
     time: f64,
+    activity: &'s Activity,
 }
 
 impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
@@ -163,6 +179,6 @@ impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.sums.run(self.written, self.scratch, self.time);
+        self.sums.run(self.written, self.scratch, self.time, self.activity);
     }
 }

@@ -12,6 +12,7 @@ use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::Quantity;
 use crate::sums::{Scratch, Sums, Written};
+use crate::sweep_part::SweepPart;
 use crate::term::{AnyTerm, Term};
 use crate::wall::Friction;
 
@@ -109,8 +110,9 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for Sweep<T, P, D> {
             return Ok(());
         }
         let range = self.sums.kernels.range();
+        SweepPart::Collect.begin(near.activity());
         scratch.surroundings.collect(&self.gathered, near, &block, range);
-        self.sums.write(&mut written, scratch, moment.stage_time);
+        self.sums.write(&mut written, scratch, moment.stage_time, near.activity());
         Ok(())
     }
 }
