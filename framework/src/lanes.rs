@@ -189,6 +189,19 @@ pub trait Lanes: Pod {
     /// If the lengths differ or are no multiple of [`SUMS`].
     fn dots<const N: usize>(a: &[Self], b: [&[Self]; N]) -> [Self; N];
 
+    /// `sum_i (by + a_i) b_i` for each of several `b`, summed as [`Lanes::dots`] does.
+    ///
+    /// # Panics
+    /// As [`Lanes::dots`].
+    fn raised_dots<const N: usize>(by: Self, a: &[Self], b: [&[Self]; N]) -> [Self; N];
+
+    /// `sum_n sum_i (by_n + a_ni) b_ni`: the partial sums of every `n` as in [`Lanes::dots`], then those of
+    /// all `n` together; 0 if `N` is.
+    ///
+    /// # Panics
+    /// As [`Lanes::dots`].
+    fn raised_contraction<const N: usize>(by: [Self; N], a: [&[Self]; N], b: [&[Self]; N]) -> Self;
+
     /// Writes element `s` of the found points' records to the first [`Found::padded`] places of
     /// `to[s]`: from an array of structures, where a point's values share a cache line, to lanes. What
     /// it does with the elements from number `used` on is not promised.
@@ -214,15 +227,19 @@ pub const RECORD: usize = 8;
 pub type Record<T> = [T; RECORD];
 
 macro_rules! lanes {
-    ($scalar:ty, $gather:ident, $gather_half:ident, $interleave:ident, $dots:ident) => {
+    (
+        $scalar:ty,
+        $gather:ident,
+        $gather_half:ident,
+        $interleave:ident,
+        $dots:ident,
+        $raised_dots:ident,
+        $raised_contraction:ident,
+    ) => {
         impl Lanes for $scalar {
             #[inline(always)]
             fn dots<const N: usize>(a: &[Self], b: [&[Self]; N]) -> [Self; N] {
-                let mut is_whole = a.len() % SUMS == 0;
-                for b in b {
-                    is_whole &= b.len() == a.len();
-                }
-                assert!(is_whole, "not whole groups of one length");
+                assert_whole_groups(a.len(), b);
                 #[cfg(target_arch = "x86_64")]
                 if avx512::is_available() {
                     // SAFETY: the instruction set is there; all are whole groups, equally many.
@@ -237,6 +254,47 @@ macro_rules! lanes {
                     }
                     add_by_halves(sums)
                 })
+            }
+
+            #[inline(always)]
+            fn raised_dots<const N: usize>(by: Self, a: &[Self], b: [&[Self]; N]) -> [Self; N] {
+                assert_whole_groups(a.len(), b);
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: the instruction set is there; all are whole groups, equally many.
+                    return unsafe { avx512::$raised_dots(by, a, b) };
+                }
+                b.map(|b| {
+                    let mut sums = [0.0 as $scalar; SUMS];
+                    add_raised(&mut sums, by, a, b);
+                    add_by_halves(sums)
+                })
+            }
+
+            #[inline(always)]
+            fn raised_contraction<const N: usize>(
+                by: [Self; N],
+                a: [&[Self]; N],
+                b: [&[Self]; N],
+            ) -> Self {
+                let Some(first) = a.first() else { return 0.0 };
+                assert_whole_groups(first.len(), a);
+                assert_whole_groups(first.len(), b);
+                #[cfg(target_arch = "x86_64")]
+                if avx512::is_available() {
+                    // SAFETY: the instruction set is there; all are whole groups, equally many, and
+                    // there is a first.
+                    return unsafe { avx512::$raised_contraction(by, a, b) };
+                }
+                let mut total = [0.0 as $scalar; SUMS];
+                for n in 0..N {
+                    let mut sums = [0.0 as $scalar; SUMS];
+                    add_raised(&mut sums, by[n], a[n], b[n]);
+                    for l in 0..SUMS {
+                        total[l] = if n == 0 { sums[l] } else { total[l] + sums[l] };
+                    }
+                }
+                add_by_halves(total)
             }
 
             #[inline]
@@ -291,8 +349,43 @@ macro_rules! lanes {
         }
     };
 }
-lanes!(f64, gather_f64, gather_half_f64, interleave_f64, dots_f64);
-lanes!(f32, gather_f32, gather_f32, interleave_f32, dots_f32);
+lanes!(
+    f64,
+    gather_f64,
+    gather_half_f64,
+    interleave_f64,
+    dots_f64,
+    raised_dots_f64,
+    raised_contraction_f64,
+);
+lanes!(
+    f32,
+    gather_f32,
+    gather_f32,
+    interleave_f32,
+    dots_f32,
+    raised_dots_f32,
+    raised_contraction_f32,
+);
+
+#[inline(always)]
+fn assert_whole_groups<T, const N: usize>(length: usize, lanes: [&[T]; N]) {
+    let mut is_whole = length % SUMS == 0;
+    for lanes in lanes {
+        is_whole &= lanes.len() == length;
+    }
+    assert!(is_whole, "not whole groups of one length");
+}
+
+/// Adds `(by + a_i) b_i` to the partial sums.
+#[inline(always)]
+fn add_raised<T: num_traits::Float>(sums: &mut [T; SUMS], by: T, a: &[T], b: &[T]) {
+    for (a, b) in a.as_chunks::<SUMS>().0.iter().zip(b.as_chunks::<SUMS>().0) {
+        for l in 0..SUMS {
+            sums[l] = (by + a[l]).mul_add(b[l], sums[l]);
+        }
+    }
+}
 
 /// Adds the upper half to the lower until one is left.
 #[inline(always)]
@@ -412,6 +505,15 @@ mod tests {
             let minus: Vec<T> = y.iter().map(|&y| -y).collect();
             let expected = add_by_halves(sums);
             assert_eq!(T::dots(&x, [&y, &minus]), [expected, -expected]);
+            let by = T::of(0.3);
+            let raised: Vec<T> = x.iter().map(|&x| by + x).collect();
+            let expected = T::dots(&raised, [&y, &x]);
+            assert_eq!(T::raised_dots(by, &x, [&y, &x]), expected);
+            assert_eq!(T::raised_contraction([by], [&x], [&y]), expected[0]);
+            let sum = T::raised_contraction([by, T::zero()], [&x, &y], [&y, &y]);
+            let parts = expected[0] + T::dots(&y, [&y])[0];
+            assert!((sum - parts).abs() <= T::of(20.0) * T::epsilon() * parts.abs());
+            assert!(groups == 0 || sum != expected[0]);
         }
     }
 

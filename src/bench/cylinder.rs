@@ -52,7 +52,10 @@ pub struct Plan {
 }
 
 /// Builds the paper's model for a width.
-fn model<T: Real, P: Real>(width: f64, viscosity: Viscosity) -> Result<Sph<T, P>, SceneError> {
+pub(super) fn model<T: Real, P: Real>(
+    width: f64,
+    viscosity: Viscosity,
+) -> Result<Sph<T, P>, SceneError> {
     let lattice = Packing::HexagonalClosePacked.fit([SIDE, SIDE, width], SPACING)?;
     let lengths = lattice.lengths();
     let body = Shape::Cylinder {

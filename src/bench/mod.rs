@@ -1,5 +1,6 @@
 //! Benchmarks that the command line runs.
 
+pub mod breakdown;
 pub mod cylinder;
 pub mod figures;
 pub mod memory;

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use finegrain::bench::breakdown::{self, Breakdown};
 use finegrain::bench::cylinder::{self, Plan};
 use finegrain::bench::figures;
 use finegrain::bench::row::{self, Row};
@@ -126,6 +127,9 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
     })?;
     table(out, &rows)?;
     row::write_csv(&plan.out.join("cylinder.csv"), &rows)?;
+    let breakdown = breakdown::measure(&plan)?;
+    breakdown_table(out, &breakdown)?;
+    breakdown.write_csv(&plan.out.join("where-time-goes.csv"))?;
     let pictures = figures::draw(&plan.out, &rows)?;
     writeln!(out, "\nnumbers:  {}", plan.out.join("cylinder.csv").display())?;
     for picture in pictures {
@@ -182,4 +186,48 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
         )?;
     }
     Ok(())
+}
+
+fn breakdown_table(out: &mut impl Write, breakdown: &Breakdown) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "\nWhere the time goes: {} particles, one worker, {:.4} s a step\n\n{:<18} {:>6} {:>11} {:>8} {:>7} \
+         {:>7} {:>7}",
+        breakdown.particles,
+        breakdown.seconds,
+        "part",
+        "share",
+        "ns/particle",
+        "GFLOP/s",
+        "of peak",
+        "GB/s",
+        "of copy",
+    )?;
+    let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+    for part in &breakdown.parts {
+        let rates = [part.flops, part.bytes].into_iter().zip(part.limits).map(|(amount, limit)| {
+            let rate = amount.map(|amount| amount / part.seconds);
+            let text = |x: Option<String>| x.unwrap_or_else(|| "-".to_owned());
+            let of_limit = rate.map(|rate| percent(rate / limit));
+            [text(rate.map(|rate| format!("{:.1}", 1e-9 * rate))), text(of_limit)]
+        });
+        let rates: Vec<_> = rates.flatten().collect();
+        writeln!(
+            out,
+            "{:<18} {:>6} {:>11.1} {:>8} {:>7} {:>7} {:>7}",
+            part.name,
+            percent(part.seconds / breakdown.seconds),
+            1e9 * part.seconds / breakdown.particles as f64,
+            rates[0],
+            rates[1],
+            rates[2],
+            rates[3],
+        )?;
+    }
+    writeln!(
+        out,
+        "share: by looking at the worker every 0.1 ms; operations, and bytes loaded and stored wherever they \
+         lie, are counted in the source\nof peak: of multiply-adds in registers; of copy: of a copy in the \
+         nearest cache, for updates in memory"
+    )
 }

@@ -134,7 +134,10 @@ fn stability(arguments: StabilityArguments) -> Result<(), CommandError> {
     let (table, picture) =
         (arguments.out.join("stability.csv"), arguments.out.join("stability.png"));
     map.write_csv(&table)?;
+    let page = arguments.out.join("index.html");
+    map.page(command_line()).write(&page, &Machine::here())?;
     writeln!(out, "\nnumbers:  {}", table.display())?;
+    writeln!(out, "page:     {}", page.display())?;
     if !map.entries.is_empty() {
         map.draw(&picture)?;
         writeln!(out, "picture:  {}", picture.display())?;

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::{Buffer, Found, RECORD, Record, SUMS, Selection, add_by_halves};
+use super::{Buffer, Found, RECORD, Record, SUMS, Selection};
 
 /// Whether this processor has what the functions below need.
 #[inline]
@@ -287,13 +287,34 @@ pub unsafe fn interleave_f32(from: [&[f32]; RECORD], to: &mut [Record<f32>]) {
     }
 }
 
+/// Adds the upper half to the lower until one is left, of two vectors of which `high` is the upper half.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn add_by_halves_f64(low: __m512d, high: __m512d) -> f64 {
+    let eight = _mm512_add_pd(low, high);
+    let upper = _mm512_extractf64x4_pd::<1>(eight);
+    let four = _mm256_add_pd(_mm512_castpd512_pd256(eight), upper);
+    let two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
+    _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)))
+}
+
+/// As [`add_by_halves_f64`].
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn add_by_halves_f32(all: __m512) -> f32 {
+    let upper = _mm512_extractf64x4_pd::<1>(_mm512_castps_pd(all));
+    let eight = _mm256_add_ps(_mm512_castps512_ps256(all), _mm256_castpd_ps(upper));
+    let four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps::<1>(eight));
+    let two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps::<1>(two, two)))
+}
+
 /// # Safety
 /// AVX-512 F is available; `a` and all of `b` have the same length, a multiple of `SUMS`.
 #[inline]
 #[target_feature(enable = "avx512f")]
 pub unsafe fn dots_f64<const N: usize>(a: &[f64], b: [&[f64]; N]) -> [f64; N] {
-    let mut low = [_mm512_setzero_pd(); N];
-    let mut high = [_mm512_setzero_pd(); N];
+    let (mut low, mut high) = ([_mm512_setzero_pd(); N], [_mm512_setzero_pd(); N]);
     for k in (0..a.len()).step_by(SUMS) {
         // SAFETY: k + 16 is at most all lengths.
         unsafe {
@@ -308,11 +329,7 @@ pub unsafe fn dots_f64<const N: usize>(a: &[f64], b: [&[f64]; N]) -> [f64; N] {
     }
     let mut sums = [0.0; N];
     for n in 0..N {
-        let eight = _mm512_add_pd(low[n], high[n]);
-        let upper = _mm512_extractf64x4_pd::<1>(eight);
-        let four = _mm256_add_pd(_mm512_castpd512_pd256(eight), upper);
-        let two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
-        sums[n] = _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
+        sums[n] = add_by_halves_f64(low[n], high[n]);
     }
     sums
 }
@@ -334,10 +351,113 @@ pub unsafe fn dots_f32<const N: usize>(a: &[f32], b: [&[f32]; N]) -> [f32; N] {
     }
     let mut sums = [0.0; N];
     for n in 0..N {
-        let mut stored = [0.0; SUMS];
-        // SAFETY: `stored` holds 16 elements.
-        unsafe { _mm512_storeu_ps(stored.as_mut_ptr(), lanes[n]) };
-        sums[n] = add_by_halves(stored);
+        sums[n] = add_by_halves_f32(lanes[n]);
     }
     sums
+}
+
+/// # Safety
+/// As [`dots_f64`].
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub unsafe fn raised_dots_f64<const N: usize>(by: f64, a: &[f64], b: [&[f64]; N]) -> [f64; N] {
+    let by = _mm512_set1_pd(by);
+    let (mut low, mut high) = ([_mm512_setzero_pd(); N], [_mm512_setzero_pd(); N]);
+    for k in (0..a.len()).step_by(SUMS) {
+        // SAFETY: k + 16 is at most all lengths.
+        unsafe {
+            let a = a.as_ptr().add(k);
+            let first = _mm512_add_pd(by, _mm512_loadu_pd(a));
+            let second = _mm512_add_pd(by, _mm512_loadu_pd(a.add(8)));
+            for n in 0..N {
+                let b = b[n].as_ptr().add(k);
+                low[n] = _mm512_fmadd_pd(first, _mm512_loadu_pd(b), low[n]);
+                high[n] = _mm512_fmadd_pd(second, _mm512_loadu_pd(b.add(8)), high[n]);
+            }
+        }
+    }
+    let mut sums = [0.0; N];
+    for n in 0..N {
+        sums[n] = add_by_halves_f64(low[n], high[n]);
+    }
+    sums
+}
+
+/// # Safety
+/// As [`dots_f64`].
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub unsafe fn raised_dots_f32<const N: usize>(by: f32, a: &[f32], b: [&[f32]; N]) -> [f32; N] {
+    let by = _mm512_set1_ps(by);
+    let mut lanes = [_mm512_setzero_ps(); N];
+    for k in (0..a.len()).step_by(SUMS) {
+        // SAFETY: k + 16 is at most all lengths.
+        unsafe {
+            let first = _mm512_add_ps(by, _mm512_loadu_ps(a.as_ptr().add(k)));
+            for n in 0..N {
+                lanes[n] = _mm512_fmadd_ps(first, _mm512_loadu_ps(b[n].as_ptr().add(k)), lanes[n]);
+            }
+        }
+    }
+    let mut sums = [0.0; N];
+    for n in 0..N {
+        sums[n] = add_by_halves_f32(lanes[n]);
+    }
+    sums
+}
+
+/// # Safety
+/// AVX-512 F is available; all of `a` and `b` have the same length, a multiple of `SUMS`; `N` is not 0.
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub unsafe fn raised_contraction_f64<const N: usize>(
+    by: [f64; N],
+    a: [&[f64]; N],
+    b: [&[f64]; N],
+) -> f64 {
+    let (mut low, mut high) = ([_mm512_setzero_pd(); N], [_mm512_setzero_pd(); N]);
+    for k in (0..a[0].len()).step_by(SUMS) {
+        for n in 0..N {
+            // SAFETY: k + 16 is at most all lengths.
+            unsafe {
+                let (a, b) = (a[n].as_ptr().add(k), b[n].as_ptr().add(k));
+                let by = _mm512_set1_pd(by[n]);
+                let first = _mm512_add_pd(by, _mm512_loadu_pd(a));
+                let second = _mm512_add_pd(by, _mm512_loadu_pd(a.add(8)));
+                low[n] = _mm512_fmadd_pd(first, _mm512_loadu_pd(b), low[n]);
+                high[n] = _mm512_fmadd_pd(second, _mm512_loadu_pd(b.add(8)), high[n]);
+            }
+        }
+    }
+    for n in 1..N {
+        low[0] = _mm512_add_pd(low[0], low[n]);
+        high[0] = _mm512_add_pd(high[0], high[n]);
+    }
+    add_by_halves_f64(low[0], high[0])
+}
+
+/// # Safety
+/// As [`raised_contraction_f64`].
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub unsafe fn raised_contraction_f32<const N: usize>(
+    by: [f32; N],
+    a: [&[f32]; N],
+    b: [&[f32]; N],
+) -> f32 {
+    let mut lanes = [_mm512_setzero_ps(); N];
+    for k in (0..a[0].len()).step_by(SUMS) {
+        for n in 0..N {
+            // SAFETY: k + 16 is at most all lengths.
+            unsafe {
+                let (a, b) = (a[n].as_ptr().add(k), b[n].as_ptr().add(k));
+                let raised = _mm512_add_ps(_mm512_set1_ps(by[n]), _mm512_loadu_ps(a));
+                lanes[n] = _mm512_fmadd_ps(raised, _mm512_loadu_ps(b), lanes[n]);
+            }
+        }
+    }
+    for n in 1..N {
+        lanes[0] = _mm512_add_ps(lanes[0], lanes[n]);
+    }
+    add_by_halves_f32(lanes[0])
 }

@@ -11,7 +11,7 @@ use finegrain_framework::{
 
 use crate::evaluation::{Alone, Piece};
 use crate::fields::Fields;
-use crate::gathered::{Gathered, Layout};
+use crate::gathered::{Gathered, Layout, Wanted};
 use crate::kernel::adaptive::AdaptiveKernel;
 use crate::neighbourhood::{Neighbours, Particle};
 use crate::quantity::Quantity;
@@ -46,7 +46,8 @@ impl<T: Real, P: Real, const D: usize> AdaptiveDensity<T, P, D> {
             writes: vec![Quantity::SmoothingLength, Quantity::GradH],
             stage: Box::new(move |fields: &Fields<T, P>| {
                 let rate = |quantity| fields.rate(quantity).expect("declared, since it is written");
-                let gathered = Gathered::new(fields, Vec::new(), true);
+                let wanted = Wanted { kernel: true, ..Wanted::default() };
+                let gathered = Gathered::new(fields, Vec::new(), wanted);
                 let layout = gathered.layout.clone();
                 Stage::rate(Self {
                     gathered,
@@ -142,13 +143,14 @@ impl<T: Real, const D: usize> Solver<T, D> {
         activity: &Activity,
     ) -> Result<(), (usize, T)> {
         let Scratch { surroundings, neighbours, ones } = scratch;
+        let mut particle = Particle::default();
         neighbours.prepare(&self.layout, surroundings.sees_bodies);
         for cell in 0..surroundings.cells.len() {
             let own = surroundings.cells[cell].clone();
             SweepPart::Search.begin(activity);
             surroundings.select(own.clone());
             for k in own {
-                let particle = surroundings.particle(&self.layout, k);
+                surroundings.look_up(&self.layout, k, &mut particle);
                 let guess = self.ratio * root::<T, D>(self.mass / density[k]);
                 let solved = self.solve(surroundings, neighbours, ones, &particle, guess, activity);
                 (smoothing_length[k], grad_h[k]) = solved.map_err(|needed| (k, needed))?;

@@ -26,8 +26,17 @@ pub(crate) struct Layout {
     pub present: Vec<Quantity>,
     /// Number of places in use of every record that a particle has.
     pub pages: Vec<usize>,
-    /// Whether the kernel itself is wanted, beside its gradient factor.
-    pub has_kernel: bool,
+    /// What of the kernel is wanted besides its gradient factor.
+    pub wanted: Wanted,
+}
+
+/// What of the kernel may be wanted besides its gradient factor.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Wanted {
+    /// Its values.
+    pub kernel: bool,
+    /// Its gradient.
+    pub gradient: bool,
 }
 
 /// No place.
@@ -50,7 +59,7 @@ pub(crate) struct Gathered<T, P> {
 
 impl<T: Real, P: Real> Gathered<T, P> {
     /// The columns of `quantities`, each once.
-    pub fn new(fields: &Fields<T, P>, mut quantities: Vec<Quantity>, has_kernel: bool) -> Self {
+    pub fn new(fields: &Fields<T, P>, mut quantities: Vec<Quantity>, wanted: Wanted) -> Self {
         quantities.sort_unstable();
         quantities.dedup();
         let mut sources: Vec<_> = (0..fields.position.len()).map(Source::Position).collect();
@@ -66,7 +75,7 @@ impl<T: Real, P: Real> Gathered<T, P> {
         sources.resize(sources.len().next_multiple_of(RECORD), Source::Nothing);
         let pages = sources.as_chunks().0.to_vec();
         let (position, wall_depth) = (fields.position.clone(), fields.wall_depth);
-        let layout = Layout { places, present, pages: used, has_kernel };
+        let layout = Layout { places, present, pages: used, wanted };
         Self { position, wall_depth, any: fields.density, pages, layout }
     }
 

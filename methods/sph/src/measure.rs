@@ -180,6 +180,54 @@ pub fn mean_neighbours<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> f64 {
     pairs / points - 1.0
 }
 
+/// What a search for all neighbours looks at, a particle.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchEffort {
+    /// Particles that sub-domains see, their own included.
+    pub seen: f64,
+    /// Those that are tested against the box around the particles of a cell.
+    pub tested: f64,
+    /// Those near the box, which are tested against every particle in it.
+    pub candidates: f64,
+}
+
+/// What a search for all neighbours looks at.
+pub fn search_effort<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> SearchEffort {
+    let range = T::of(whole.domain.range());
+    let points = whole.columns.points() as f64;
+    let positions = whole.domain.positions().to_vec();
+    let sums = whole.sum(|near| {
+        let block = near.sub_domain();
+        let mut runs = Vec::new();
+        block.surroundings(&mut runs);
+        let count = runs.iter().map(|run| run.span.len()).sum::<usize>() as f64;
+        let (mut cells, mut candidates) = (0.0, 0.0);
+        for cell in block.cells() {
+            let mut is_near = Vec::new();
+            for (a, &position) in positions.iter().enumerate() {
+                let position = near.state(position);
+                let own = position.at(near.reach(near.id(), cell.span)).iter();
+                let bounds = (T::infinity(), T::neg_infinity());
+                let (low, high) = own.fold(bounds, |(low, high), &x| (low.min(x), high.max(x)));
+                let seen = runs.iter().flat_map(|run| {
+                    let shift = T::of(run.shift[a]);
+                    position.at(near.reach(run.owner, run.span)).iter().map(move |&x| x + shift)
+                });
+                let squares =
+                    seen.map(|x| (low - x).max(x - high).max(T::zero()).powi(2)).enumerate();
+                is_near.resize(count as usize, T::zero());
+                squares.for_each(|(j, square)| is_near[j] += square);
+            }
+            let found = is_near.iter().filter(|&&squared| squared < range * range).count();
+            candidates += (found * cell.span.len()) as f64;
+            cells += 1.0;
+        }
+        [count, count * cells, candidates]
+    });
+    let [seen, tested, candidates] = sums.map(|sum| sum / points);
+    SearchEffort { seen, tested, candidates }
+}
+
 /// Distance of the two particles that are closest to each other, m; infinite if no two are within
 /// the range of interaction.
 pub fn closest_pair<T: Real>(whole: &mut Whole<'_, Cells<T>>) -> f64 {

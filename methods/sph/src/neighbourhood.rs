@@ -5,7 +5,7 @@ use std::ops::Index;
 use finegrain_framework::lanes::{Buffer, Found, RECORD};
 use finegrain_framework::{Activity, Real};
 
-use crate::gathered::{ABSENT, Layout};
+use crate::gathered::{ABSENT, Layout, Wanted};
 use crate::kernel::Kernel;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::{Quantity, Values, component};
@@ -19,18 +19,25 @@ pub(crate) struct Particle<T, const D: usize> {
     /// Its place among all that its sub-domain sees.
     pub place: usize,
     pub position: [T; D],
-    values: Values<T>,
+    /// What was gathered of it; 0 for the rest.
+    pub values: Values<T>,
     /// How it sees the velocities of wall particles.
     pub no_slip: Extrapolation<T>,
 }
 
-impl<T: Real, const D: usize> Particle<T, D> {
-    /// A particle that sees bodies as they are.
-    #[inline(always)]
-    pub fn new(place: usize, position: [T; D], values: Values<T>) -> Self {
-        Self { place, position, values, no_slip: Extrapolation::none() }
+impl<T: Real, const D: usize> Default for Particle<T, D> {
+    /// None yet.
+    fn default() -> Self {
+        Self {
+            place: 0,
+            position: [T::zero(); D],
+            values: Values::zero(),
+            no_slip: Extrapolation::none(),
+        }
     }
+}
 
+impl<T: Real, const D: usize> Particle<T, D> {
     /// Whether it is part of a body.
     #[inline(always)]
     pub fn is_wall(&self) -> bool {
@@ -72,9 +79,10 @@ pub(crate) struct Neighbours<T, const D: usize> {
     gradient_factor: Buffer<T>,
     /// Empty unless every particle has its own smoothing length.
     gradient_factor_of_others: Buffer<T>,
-    /// Whether a term wants the kernel itself; its lanes are empty if none does.
-    has_kernel: bool,
+    /// What else terms want; its lanes are empty if none does.
+    wanted: Wanted,
     kernel: Buffer<T>,
+    gradient: [Buffer<T>; D],
     /// Per page of the records, a lane for each place. In the first, positions have
     /// been replaced by `x_i - x_j`.
     pages: Vec<[Buffer<T>; RECORD]>,
@@ -93,8 +101,9 @@ impl<T: Real, const D: usize> Default for Neighbours<T, D> {
             distance_squared: Buffer::default(),
             gradient_factor: Buffer::default(),
             gradient_factor_of_others: Buffer::default(),
-            has_kernel: false,
+            wanted: Wanted::default(),
             kernel: Buffer::default(),
+            gradient: std::array::from_fn(|_| Buffer::default()),
             pages: Vec::new(),
             used: Vec::new(),
             places: [ABSENT; Quantity::COUNT],
@@ -109,7 +118,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         if !sees_bodies {
             self.places[Quantity::WallDepth.index()] = ABSENT;
         }
-        self.has_kernel = layout.has_kernel;
+        self.wanted = layout.wanted;
         self.pages.resize_with(layout.pages.len(), Default::default);
         self.used.clone_from(&layout.pages);
     }
@@ -203,6 +212,15 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         }
         // The padding repeats a neighbour: it must have no effect.
         gradient_factor[count..].fill(T::zero());
+        if self.wanted.gradient {
+            for a in 0..D {
+                let difference = &self.pages[0][a][..padded];
+                let lanes = self.gradient[a][..padded].iter_mut().zip(&*gradient_factor);
+                for ((gradient, &factor), &d) in lanes.zip(difference) {
+                    *gradient = factor * d;
+                }
+            }
+        }
     }
 
     #[cold]
@@ -213,7 +231,8 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
             .iter_mut()
             .flatten()
             .chain([&mut self.distance_squared, &mut self.gradient_factor])
-            .chain(self.has_kernel.then_some(&mut self.kernel))
+            .chain(self.wanted.kernel.then_some(&mut self.kernel))
+            .chain(self.gradient.iter_mut().filter(|_| self.wanted.gradient))
             .chain(has_own_lengths.then_some(&mut self.gradient_factor_of_others));
         for lanes in all {
             lanes.resize(length);
@@ -246,6 +265,22 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     #[inline(always)]
     pub fn gradient_factor(&self) -> &[T] {
         &self.gradient_factor[..self.padded]
+    }
+
+    /// Component `a` of `grad_i W_ij`; only for terms that say that they use it.
+    #[inline(always)]
+    pub fn gradient(&self, a: usize) -> &[T] {
+        &self.gradient[a][..self.padded]
+    }
+
+    /// All components of `grad_i W_ij`, as above.
+    #[inline(always)]
+    pub fn gradients(&self) -> [&[T]; D] {
+        let mut gradients = [&[][..]; D];
+        for a in 0..D {
+            gradients[a] = self.gradient(a);
+        }
+        gradients
     }
 
     /// `F` with the neighbours' smoothing lengths, where they have their own.

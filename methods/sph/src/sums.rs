@@ -59,6 +59,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
         activity: &Activity,
     ) {
         let Scratch { surroundings, neighbours, work } = scratch;
+        let mut particle = Particle::default();
         neighbours.prepare(&self.layout, surroundings.sees_bodies);
         for cell in 0..surroundings.cells.len() {
             let own = surroundings.cells[cell].clone();
@@ -71,7 +72,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
                 }
             };
             for k in own {
-                let mut particle = surroundings.particle(&self.layout, k);
+                surroundings.look_up(&self.layout, k, &mut particle);
                 if !self.acts_at(particle[Quantity::WallDepth]) {
                     for column in &mut written[..self.outputs.len()] {
                         column[k] = T::zero();
@@ -81,7 +82,8 @@ impl<T: Real, const D: usize> Sums<T, D> {
                 particle.no_slip = self.no_slip(&particle, surroundings);
                 neighbours.gather(surroundings, &particle, &self.kernels, longest, activity);
                 SweepPart::Terms.begin(activity);
-                let mut sums = self.sum(&particle, neighbours, work);
+                let mut sums = Values::zero();
+                self.sum(&particle, neighbours, work, &mut sums);
                 if let Some(imposed) = &self.imposed
                     && imposed.varies()
                     && !particle.is_wall()
@@ -121,8 +123,13 @@ impl<T: Real, const D: usize> Sums<T, D> {
 
     /// All terms for one particle.
     #[inline(always)]
-    fn sum(&self, i: &Particle<T, D>, near: &Neighbours<T, D>, work: &mut Work<T>) -> Values<T> {
-        let mut sums = Values::zero();
+    fn sum(
+        &self,
+        i: &Particle<T, D>,
+        near: &Neighbours<T, D>,
+        work: &mut Work<T>,
+        sums: &mut Values<T>,
+    ) {
         // Both in one loop, because a loop over terms is a copy of all of them to compile.
         let rounds: [&[AnyTerm<T>]; 2] = if i.is_wall() {
             [&self.on_bodies, &self.of_bodies]
@@ -134,7 +141,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
         };
         for (round, terms) in rounds.into_iter().enumerate() {
             for term in terms {
-                term.add(i, near, work, &mut sums);
+                term.add(i, near, work, sums);
             }
             if i.is_wall() && round == 0 {
                 // The forces on a body are not an acceleration of its particles.
@@ -144,7 +151,6 @@ impl<T: Real, const D: usize> Sums<T, D> {
                 }
             }
         }
-        sums
     }
 }
 

@@ -11,7 +11,8 @@ use finegrain_framework::{Near, Real, View};
 use crate::fields::Column;
 use crate::gathered::{ABSENT, Gathered, Layout, Source};
 use crate::neighbourhood::Particle;
-use crate::quantity::{Quantity, Values};
+use crate::quantity::Quantity;
+use crate::wall::Extrapolation;
 
 /// All particles that may interact with those of a sub-domain, and of these, those that may interact
 /// with the particles of the cell at hand.
@@ -201,20 +202,19 @@ impl<T: Real, const D: usize> Surroundings<T, D> {
         largest
     }
 
-    /// The sub-domain's own particle number `i`.
+    /// Looks up the sub-domain's own particle number `i`, which sees bodies as they are.
     #[inline(always)]
-    pub fn particle(&self, layout: &Layout, i: usize) -> Particle<T, D> {
+    pub fn look_up(&self, layout: &Layout, i: usize, particle: &mut Particle<T, D>) {
         let i = self.own[i] as usize;
-        let mut values = Values::zero();
+        particle.place = i;
         for &quantity in &layout.present {
             let place = layout.places[quantity.index()];
-            values[quantity] = self.pages[place / RECORD][i][place % RECORD];
+            particle.values[quantity] = self.pages[place / RECORD][i][place % RECORD];
         }
-        let mut position = [T::zero(); D];
         for a in 0..D {
-            position[a] = self.position[a][i];
+            particle.position[a] = self.position[a][i];
         }
-        Particle::new(i, position, values)
+        particle.no_slip = Extrapolation::none();
     }
 
     /// Where a particle is.

@@ -7,7 +7,7 @@ use finegrain_framework::{
 };
 
 use crate::fields::Fields;
-use crate::gathered::Gathered;
+use crate::gathered::{Gathered, Wanted};
 use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
 use crate::quantity::Quantity;
@@ -49,7 +49,10 @@ impl<T: Real, P: Real, const D: usize> Sweep<T, P, D> {
         let (quantities, outputs): (Vec<_>, Vec<_>) = outputs.unzip();
         // Named after what it sums up, for error messages.
         let names: Vec<_> = terms.iter().map(AnyTerm::name).collect();
-        let uses_kernel = terms.iter().any(Term::uses_kernel);
+        let wanted = Wanted {
+            kernel: terms.iter().any(Term::uses_kernel),
+            gradient: terms.iter().any(Term::uses_gradient),
+        };
         let sees_velocity = terms.iter().any(Term::sees_velocity_in_bodies);
         // Particles of bodies do not move, and stress in them is not looked at.
         let evolves = |term: &AnyTerm<T>| {
@@ -64,7 +67,7 @@ impl<T: Real, P: Real, const D: usize> Sweep<T, P, D> {
             |term: &&AnyTerm<T>| term.pushes_bodies() && !(slips && term.sees_velocity_in_bodies());
         let reacts = accelerates && !fields.reaction.is_empty();
         let imposed_reads = imposed.reads().filter(|_| accelerates);
-        let gathered = Gathered::new(fields, reads.chain(imposed_reads).collect(), uses_kernel);
+        let gathered = Gathered::new(fields, reads.chain(imposed_reads).collect(), wanted);
         let sums = Sums {
             kernels,
             of_fluid: terms.iter().filter(|term| !term.acts_on_bodies()).copied().collect(),

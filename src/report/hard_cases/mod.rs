@@ -1,5 +1,6 @@
 //! The hard cases, and the variants that are tried on them.
 
+mod fd;
 mod lbm;
 mod sph;
 
@@ -50,7 +51,8 @@ pub struct Sign {
 pub fn all() -> impl Iterator<Item = &'static HardCase> {
     const SPH: &[HardCase] = &sph::CASES;
     const LBM: &[HardCase] = &lbm::CASES;
-    SPH.iter().chain(LBM)
+    const FD: &[HardCase] = &fd::CASES;
+    SPH.iter().chain(LBM).chain(FD)
 }
 
 const fn variant(name: &'static str, settings: &'static [(&'static str, &'static str)]) -> Variant {

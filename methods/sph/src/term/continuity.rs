@@ -27,6 +27,10 @@ impl<T: Real> Term<T> for Continuity<T> {
         vec![Quantity::DensityRate]
     }
 
+    fn uses_gradient(&self) -> bool {
+        !self.is_corrected
+    }
+
     #[inline(always)]
     fn add<const D: usize>(
         &self,
@@ -35,9 +39,9 @@ impl<T: Real> Term<T> for Continuity<T> {
         work: &mut Work<T>,
         sums: &mut Values<T>,
     ) {
-        let factor = near.gradient_factor();
-        let [jump, weight] = work.lanes(factor.len());
         if self.is_corrected {
+            let factor = near.gradient_factor();
+            let [jump, weight] = work.lanes(factor.len());
             near.corrected_velocity_jump(i, jump);
             let volume = near.values(Quantity::Volume);
             for ((weight, &factor), &volume) in weight.iter_mut().zip(factor).zip(volume) {
@@ -46,9 +50,13 @@ impl<T: Real> Term<T> for Continuity<T> {
             let [sum] = T::dots(weight, [&*jump]);
             sums[Quantity::DensityRate] += self.mass / i[Quantity::Volume] * sum;
         } else {
-            near.velocity_jump(i, jump);
-            let [sum] = T::dots(factor, [&*jump]);
-            sums[Quantity::DensityRate] += self.mass * sum;
+            let (mut minus_own, mut velocity) = ([T::zero(); D], [&[][..]; D]);
+            for a in 0..D {
+                minus_own[a] = -i[Quantity::Velocity(a)];
+                velocity[a] = near.values(Quantity::Velocity(a));
+            }
+            let sum = T::raised_contraction(minus_own, velocity, near.gradients());
+            sums[Quantity::DensityRate] -= self.mass * sum;
         }
     }
 }

@@ -70,6 +70,11 @@ pub(crate) trait Term<T: Real> {
         false
     }
 
+    /// Whether it runs over the kernel's gradient ([`Neighbours::gradient`]).
+    fn uses_gradient(&self) -> bool {
+        false
+    }
+
     /// Whether velocities in bodies matter to it, which the no-slip condition extrapolates.
     fn sees_velocity_in_bodies(&self) -> bool {
         false
@@ -139,6 +144,12 @@ macro_rules! terms {
             fn uses_kernel(&self) -> bool {
                 match self {
                     $(Self::$Name(term) => Term::<T>::uses_kernel(term),)*
+                }
+            }
+
+            fn uses_gradient(&self) -> bool {
+                match self {
+                    $(Self::$Name(term) => Term::<T>::uses_gradient(term),)*
                 }
             }
 

@@ -22,6 +22,10 @@ impl<T: Real> Term<T> for PressureGradient<T> {
         Quantity::vector(Quantity::Acceleration, dims).collect()
     }
 
+    fn uses_gradient(&self) -> bool {
+        true
+    }
+
     fn pushes_bodies(&self) -> bool {
         true
     }
@@ -31,16 +35,11 @@ impl<T: Real> Term<T> for PressureGradient<T> {
         &self,
         i: &Particle<T, D>,
         near: &Neighbours<T, D>,
-        work: &mut Work<T>,
+        _: &mut Work<T>,
         sums: &mut Values<T>,
     ) {
-        let factor = near.gradient_factor();
-        let [weight, _] = work.lanes(factor.len());
         let (own, others) = (i[Quantity::PressureTerm], near.values(Quantity::PressureTerm));
-        for ((weight, &factor), &p) in weight.iter_mut().zip(factor).zip(others) {
-            *weight = factor * (own + p);
-        }
-        let mut acceleration = near.sum_differences(weight);
+        let mut acceleration = T::raised_dots(own, others, near.gradients());
         for a in 0..D {
             acceleration[a] *= -self.mass;
         }
@@ -68,6 +67,10 @@ impl<T: Real> Term<T> for StressDivergence<T> {
         Quantity::vector(Quantity::Acceleration, dims).collect()
     }
 
+    fn uses_gradient(&self) -> bool {
+        true
+    }
+
     fn pushes_bodies(&self) -> bool {
         true
     }
@@ -80,37 +83,38 @@ impl<T: Real> Term<T> for StressDivergence<T> {
         work: &mut Work<T>,
         sums: &mut Values<T>,
     ) {
-        let factor = near.gradient_factor();
-        let [weight, _] = work.lanes(factor.len());
+        let gradient = near.gradients();
         let mut acceleration = [T::zero(); D];
+        let Some(depth) = near.wall_depth() else {
+            for a in 0..D {
+                let (mut own, mut stress) = ([T::zero(); D], [&[][..]; D]);
+                for b in 0..D {
+                    own[b] = i[Quantity::StressTerm(component(a, b))];
+                    stress[b] = near.values(Quantity::StressTerm(component(a, b)));
+                }
+                acceleration[a] = self.mass * T::raised_contraction(own, stress, gradient);
+            }
+            sums.add(Quantity::Acceleration, acceleration);
+            return;
+        };
+        let [seen, _] = work.lanes(depth.len());
         for a in 0..D {
             for b in 0..=a {
-                let c = component(a, b);
-                let own = i[Quantity::StressTerm(c)];
-                let stress = near.values(Quantity::StressTerm(c));
-                match near.wall_depth() {
-                    Some(depth) if i.is_wall() => {
-                        let lanes = weight.iter_mut().zip(factor).zip(stress).zip(depth);
-                        for (((weight, &factor), &stress), &depth) in lanes {
-                            let seen = if depth > T::zero() { T::zero() } else { stress };
-                            *weight = factor * (seen + seen);
-                        }
+                let stress = near.values(Quantity::StressTerm(component(a, b)));
+                let lanes = seen.iter_mut().zip(stress).zip(depth);
+                let own = if i.is_wall() {
+                    for ((seen, &stress), &depth) in lanes {
+                        *seen = if depth > T::zero() { T::zero() } else { stress + stress };
                     }
-                    Some(depth) => {
-                        let lanes = weight.iter_mut().zip(factor).zip(stress).zip(depth);
-                        for (((weight, &factor), &stress), &depth) in lanes {
-                            let seen = if depth > T::zero() { own } else { stress };
-                            *weight = factor * (own + seen);
-                        }
+                    T::zero()
+                } else {
+                    let own = i[Quantity::StressTerm(component(a, b))];
+                    for ((seen, &stress), &depth) in lanes {
+                        *seen = if depth > T::zero() { own } else { stress };
                     }
-                    None => {
-                        let lanes = weight.iter_mut().zip(factor).zip(stress);
-                        for ((weight, &factor), &stress) in lanes {
-                            *weight = factor * (own + stress);
-                        }
-                    }
-                }
-                let along = T::dots(weight, [near.difference(a), near.difference(b)]);
+                    own
+                };
+                let along = T::raised_dots(own, seen, [gradient[a], gradient[b]]);
                 acceleration[a] += self.mass * along[1];
                 if a != b {
                     acceleration[b] += self.mass * along[0];

@@ -34,6 +34,10 @@ impl<T: Real> Term<T> for StrainRate<T> {
         Quantity::symmetric(Quantity::StressTerm, dims).collect()
     }
 
+    fn uses_gradient(&self) -> bool {
+        true
+    }
+
     fn sees_velocity_in_bodies(&self) -> bool {
         true
     }
@@ -46,26 +50,29 @@ impl<T: Real> Term<T> for StrainRate<T> {
         work: &mut Work<T>,
         sums: &mut Values<T>,
     ) {
-        let factor = near.gradient_factor();
-        let [weight, jump] = work.lanes(factor.len());
         let volume = near.values(Quantity::Volume);
-        for ((weight, &factor), &volume) in weight.iter_mut().zip(factor).zip(volume) {
-            *weight = factor * volume;
-        }
-        i.no_slip.amplify(weight, near.wall_depth());
+        let [weight, jump] = work.lanes(volume.len());
+        let weight = match near.wall_depth() {
+            None => volume,
+            depth => {
+                weight.copy_from_slice(volume);
+                i.no_slip.amplify(weight, depth);
+                weight
+            }
+        };
         let mut gradient = [[T::zero(); D]; D];
         for a in 0..D {
             let (own, v) = (i[Quantity::Velocity(a)], near.values(Quantity::Velocity(a)));
-            for ((jump, &weight), &v) in jump.iter_mut().zip(&*weight).zip(v) {
+            for ((jump, &weight), &v) in jump.iter_mut().zip(weight).zip(v) {
                 *jump = weight * (v - own);
             }
             if let Some(in_bodies) = self.in_bodies {
-                let lanes = jump.iter_mut().zip(&*weight).zip(near.values(in_bodies.component(a)));
+                let lanes = jump.iter_mut().zip(weight).zip(near.values(in_bodies.component(a)));
                 for ((jump, &weight), &v) in lanes {
                     *jump += weight * v;
                 }
             }
-            gradient[a] = near.sum_differences(jump);
+            gradient[a] = T::dots(jump, near.gradients());
             if self.is_corrected {
                 gradient[a] = i.corrected(gradient[a]);
             }

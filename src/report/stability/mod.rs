@@ -1,5 +1,7 @@
 //! Stability maps: which variants of a scheme survive a hard case, and which do not.
 
+mod pages;
+
 use std::fmt;
 use std::io;
 use std::path::Path;
@@ -38,6 +40,8 @@ impl fmt::Display for Outcome {
 /// One variant of one case.
 #[derive(Clone, Debug)]
 pub struct Entry {
+    /// Method of the case.
+    pub method: &'static str,
     /// Name of the case.
     pub case: &'static str,
     /// Name of the variant.
@@ -119,8 +123,8 @@ fn entry(
             largest_courant = Some(courant);
         }
     }
-    let (case, variant) = (case.name, variant.name);
-    Ok(Entry { case, variant, outcome, wall_s, largest_courant })
+    let (method, case, variant) = (case.method, case.name, variant.name);
+    Ok(Entry { method, case, variant, outcome, wall_s, largest_courant })
 }
 
 /// Outcome and wall-clock time of one run, with a parameter so many times its own.
@@ -169,18 +173,23 @@ fn judge(case: &HardCase, report: &Report) -> Outcome {
 }
 
 impl Map {
+    /// The entries, case by case.
+    fn cases(&self) -> impl Iterator<Item = &[Entry]> {
+        self.entries.chunk_by(|a, b| (a.method, a.case) == (b.method, b.case))
+    }
+
     /// Writes the map as CSV.
     ///
     /// # Errors
     /// If the file cannot be written.
     pub fn write_csv(&self, path: &Path) -> io::Result<()> {
-        let mut text = String::from("case,variant,outcome,largest_courant,wall_s\n");
+        let mut text = String::from("method,case,variant,outcome,largest_courant,wall_s\n");
         for entry in &self.entries {
             let courant = entry.largest_courant.map_or_else(String::new, |c| c.to_string());
             let outcome = entry.outcome.to_string().replace('"', "'");
             text += &format!(
-                "{},{},\"{outcome}\",{courant},{:.1}\n",
-                entry.case, entry.variant, entry.wall_s
+                "{},\"{}\",{},\"{outcome}\",{courant},{:.1}\n",
+                entry.method, entry.case, entry.variant, entry.wall_s
             );
         }
         std::fs::write(path, text)
@@ -196,7 +205,7 @@ impl Map {
             .legend(Tone::Doubtful, "survives, but wrong")
             .legend(Tone::Bad, "blows up")
             .legend(Tone::Unknown, "not finished");
-        for row in self.entries.chunk_by(|a, b| a.case == b.case) {
+        for row in self.cases() {
             tiles = tiles.row(row[0].case, row.iter().map(tile));
         }
         tiles.save(path)
