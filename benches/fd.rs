@@ -75,8 +75,12 @@ fn start(x: [f64; 3]) -> f64 {
 /// By Euler's method, 7 points.
 fn heat<T: Compiled>() -> Result<Fd<T>, FdError> {
     let boundary = Boundary::all(Condition::Outflow);
-    let heat =
-        Heat { diffusivity: 1.0, order: Order::Second, integrator: Integrator::Euler, boundary };
+    let heat = Heat {
+        diffusivity: 1.0,
+        order: Order::Second,
+        integrator: Integrator::Euler.into(),
+        boundary,
+    };
     heat.model(&cube(), 0.9 * heat.time_step_limit(&cube())?, &start)
 }
 

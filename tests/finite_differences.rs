@@ -29,6 +29,44 @@ fn heat_levels_out_in_the_order_of_the_laplacian() {
     }
 }
 
+/// Between ends whose temperature swings, and with steps at least a thousand times as long as explicit ones may be.
+#[cfg(feature = "implicit")]
+#[test]
+fn stiff_heat_is_stepped_in_the_order_of_the_scheme() {
+    for (integrator, design) in [("backward-euler", 1.0), ("crank-nicolson", 2.0), ("bdf2", 2.0)] {
+        let [coarse, fine] = ["2000", "1000"].map(|courant| {
+            let line = [("dim", "1"), ("resolution", "801"), ("order", "6"), ("ends", "driven")];
+            let settings =
+                [&line[..], &[("integrator", integrator), ("courant", courant)]].concat();
+            errors("heat", &settings)["temperature_l2"]
+        });
+        let measured = (coarse / fine).log2();
+        assert!((measured - design).abs() < 0.1, "{integrator}: {measured}, {fine}");
+    }
+}
+
+/// A step that Crank-Nicolson does not smooth is smooth with the others.
+#[cfg(feature = "implicit")]
+#[test]
+fn crank_nicolson_rings_after_a_step() {
+    for (integrator, is_smooth) in
+        [("backward-euler", true), ("crank-nicolson", false), ("bdf2", true)]
+    {
+        let line = [("dim", "1"), ("resolution", "1001"), ("order", "2"), ("ends", "cold")];
+        let step = [("start", "step"), ("integrator", integrator), ("courant", "4000")];
+        let error = errors("heat", &[&line[..], &step].concat());
+        assert_eq!(error["temperature_l2"] < 0.05, is_smooth, "{integrator}: {error:?}");
+    }
+}
+
+#[test]
+fn a_step_does_not_start_between_driven_ends() {
+    let scene = Scene::find("heat").unwrap();
+    let parameters = scene.set([("ends", "driven"), ("start", "step")]).unwrap();
+    let said = scene.prepare(None, &parameters, Precision::F64).err().unwrap().to_string();
+    assert!(said.contains("start = step") && said.contains("wave with ends = driven"), "{said}");
+}
+
 #[test]
 fn waves_keep_their_energy() {
     for ends in ["periodic", "fixed", "free"] {
@@ -131,6 +169,10 @@ fn a_checkpoint_is_gone_on_from_with_the_same_bits() {
     let settings = [("ends", "fixed"), ("resolution", "40")];
     runs::assert_goes_on_with_the_same_bits("fd", "wave", &settings);
     runs::assert_goes_on_with_the_same_bits("fd", "cavity", &[("resolution", "20")]);
+    if cfg!(feature = "implicit") {
+        let settings = [("ends", "driven"), ("integrator", "bdf2"), ("courant", "20")];
+        runs::assert_goes_on_with_the_same_bits("fd", "heat", &settings);
+    }
 }
 
 #[test]

@@ -121,6 +121,19 @@ impl Boundary {
         Self([0, 1, 2].map(|_| [condition.clone(), condition.clone()]))
     }
 
+    /// The conditions along one axis as those of x, with zero imposed.
+    #[cfg(feature = "implicit")]
+    pub(crate) fn homogeneous_along(&self, axis: usize) -> Self {
+        let mut boundary = Self::all(Condition::Outflow);
+        boundary.0[0] = self.0[axis].clone().map(|condition| match condition {
+            Condition::Dirichlet(_) => Condition::dirichlet(0.0),
+            Condition::Neumann(_) => Condition::neumann(0.0),
+            Condition::Robin { value, slope, .. } => Condition::robin(value, slope, 0.0),
+            Condition::Outflow => Condition::Outflow,
+        });
+        boundary
+    }
+
     pub(crate) fn check(&self, mesh: &Mesh) -> Result<(), FdError> {
         let bounded = mesh.sides().iter().zip(&self.0).zip(AXES);
         for ((_, ends), axis) in bounded.filter(|((s, _), _)| s.spread != Spread::Periodic) {

@@ -34,6 +34,25 @@ pub enum FdError {
         /// The scheme, in words.
         scheme: String,
     },
+    /// Implicit steps were not compiled.
+    #[error(
+        "integrator = {scheme}: implicit steps need the cargo feature `implicit`, which this was built without; \
+         build it with `--features implicit`, or choose euler, rk2, ssp-rk3 or rk4"
+    )]
+    NotCompiled {
+        /// The scheme.
+        scheme: &'static str,
+    },
+    /// There is no factor of the matrix of implicit steps.
+    #[error(
+        "the matrix of implicit steps for {points} points cannot be factorised: {cause}; choose fewer points"
+    )]
+    Factor {
+        /// Number of points.
+        points: usize,
+        /// Why.
+        cause: String,
+    },
     /// There are fewer points along an axis than stencils need.
     #[error("{points} points along {axis}; there must be at least {least}")]
     TooFew {

@@ -13,6 +13,7 @@
 //! | `line.rs` | derivatives along one axis, with its boundary conditions |
 //! | `sweep.rs`, `row.rs` | the stage that evaluates an equation: rows of a tile, packs of a row |
 //! | `stability.rs` | the longest stable time step |
+//! | `time_stepping.rs`, `implicit/` | explicit and implicit steps; the latter with the cargo feature `implicit` |
 //! | `navier_stokes/` | incompressible flow on a staggered grid: its terms, stages and model |
 //! | `poisson/` | the pressure, by waves along each axis |
 //! | [`measure`] | integrals and extremes |
@@ -28,7 +29,7 @@
 //!
 //! let mut boundary = Boundary::all(Condition::dirichlet(0.0));
 //! boundary.0[1] = [Condition::neumann(0.0), Condition::neumann(0.0)];
-//! let heat = Heat { diffusivity: 0.1, order: Order::Fourth, integrator: Integrator::Rk4, boundary };
+//! let heat = Heat { diffusivity: 0.1, order: Order::Fourth, integrator: Integrator::Rk4.into(), boundary };
 //! let mesh = Mesh::new([Side::ends(33, 0.0, 1.0), Side::ends(17, 0.0, 0.5)]);
 //! let time_step = 0.5 * heat.time_step_limit(&mesh)?;
 //! let plate = heat.model::<f64>(&mesh, time_step, &|[x, _, _]| (PI * x).sin())?;
@@ -39,6 +40,13 @@
 //! assert!((left - exact).abs() < 1e-5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Implicit steps
+//! With the cargo feature `implicit`, which compiles faer, [`Heat`] takes time steps of any length by backward Euler,
+//! Crank-Nicolson or BDF2 ([`Implicit`]), in every mesh and with every condition that it has:
+//! `integrator: Implicit::Bdf2.into()`. The matrix is what the explicit stage comes to, its factor is computed when the
+//! time step changes, and a step costs a sparse solve by one thread. Without the feature [`Heat::model`] says what is
+//! missing.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -51,12 +59,15 @@ pub mod model;
 pub mod operator;
 
 mod around;
+#[cfg(feature = "implicit")]
+mod implicit;
 mod line;
 mod navier_stokes;
 mod poisson;
 mod row;
 mod stability;
 mod sweep;
+mod time_stepping;
 
 pub use around::{At, laplacian};
 pub use boundary::{Boundary, Condition, Data};
@@ -68,3 +79,4 @@ pub use navier_stokes::NavierStokes;
 pub use operator::Order;
 pub use operator::face::Face;
 pub use operator::staggered::StaggeredOrder;
+pub use time_stepping::{Implicit, TimeStepping};

@@ -18,7 +18,7 @@ use crate::equation::heat::Diffusion;
 use crate::equation::wave::Waves;
 use crate::error::FdError;
 use crate::line::{Ends, Line};
-use crate::mesh::{AXES, Mesh, Spread};
+use crate::mesh::{AXES, Mesh, Side, Spread};
 use crate::navier_stokes::{Fields, Stages};
 use crate::operator::face::{Face, Upwind1, Upwind3, Weno5, Weno5Z};
 use crate::operator::sbp::Closure;
@@ -56,14 +56,14 @@ pub struct Parts<T: Real> {
 
 /// Brings the parts of a model together.
 pub struct Builder<'m, T: Real, const F: usize, const G: usize> {
-    mesh: &'m Mesh,
-    boundaries: [&'m Boundary; F],
-    order: Order,
-    domain: Grid,
-    columns: Columns,
-    unknowns: Vec<State<T>>,
+    pub(crate) mesh: &'m Mesh,
+    pub(crate) boundaries: [&'m Boundary; F],
+    pub(crate) order: Order,
+    pub(crate) domain: Grid,
+    pub(crate) columns: Columns,
+    pub(crate) unknowns: Vec<State<T>>,
     given: Vec<State<T>>,
-    out: Vec<Rate<T>>,
+    pub(crate) out: Vec<Rate<T>>,
 }
 
 impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
@@ -190,7 +190,7 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
         Ok(fd)
     }
 
-    fn finish(
+    pub(crate) fn finish(
         self,
         name: &str,
         plan: Plan<Grid>,
@@ -201,12 +201,7 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
         model.pacing = pacing;
         let mut weights = [vec![1.0], vec![1.0], vec![1.0]];
         for (weights, side) in weights.iter_mut().zip(mesh.sides()) {
-            let closure = Closure::of(order).filter(|_| side.spread == Spread::Ends);
-            let weight = |i: usize| {
-                let from_end = i.min(side.points - 1 - i);
-                side.spacing() * closure.map_or(1.0, |closure| value(closure.norm(from_end)))
-            };
-            *weights = (0..side.points).map(weight).collect();
+            *weights = norm(side, order);
         }
         let mesh = mesh.clone();
         let parts = Parts { mesh, unknowns, rates: out, derived: Vec::new(), weights };
@@ -272,6 +267,16 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
             positions: [0, 1, 2].map(|a| (0..shape[a]).map(|i| along(a, i)).collect()),
         }))
     }
+}
+
+/// Weights of the points along a side in the norm of the difference operators, m.
+pub(crate) fn norm(side: &Side, order: Order) -> Vec<f64> {
+    let closure = Closure::of(order).filter(|_| side.spread == Spread::Ends);
+    let weight = |i: usize| {
+        let from_end = i.min(side.points - 1 - i);
+        side.spacing() * closure.map_or(1.0, |closure| value(closure.norm(from_end)))
+    };
+    (0..side.points).map(weight).collect()
 }
 
 /// A scalar that kernels are compiled for: once, in this crate, and not anew in every crate that uses

@@ -2,7 +2,7 @@
 
 use finegrain_fd::{
     Advection, Boundary, Burgers, Condition, Drift, Face, FdError, Gas, GasEnd, GasState, Heat,
-    Mesh, NavierStokes, Order, Side, StaggeredOrder, Wave,
+    Implicit, Mesh, NavierStokes, Order, Side, StaggeredOrder, TimeStepping, Wave,
 };
 use finegrain_framework::Integrator;
 
@@ -17,7 +17,7 @@ fn heat() -> Heat {
     Heat {
         diffusivity: 1.0,
         order: Order::Fourth,
-        integrator: Integrator::Rk4,
+        integrator: Integrator::Rk4.into(),
         boundary: Boundary::all(Condition::dirichlet(0.0)),
     }
 }
@@ -48,6 +48,33 @@ fn a_time_step_past_the_limit() {
     let advection = Advection { face: Face::Weno5, integrator: Integrator::Euler, boundary };
     let text = said(advection.model::<f64>(&mesh, 1e-6, &|_| [1.0; 3], &|_| 0.0));
     assert!(text.contains("weno5 with euler") && text.contains("not stable"), "{text}");
+}
+
+#[test]
+fn implicit_steps_take_any_length_but_none_that_is_no_length() {
+    let heat = Heat { integrator: Implicit::Bdf2.into(), ..heat() };
+    assert_eq!(heat.time_step_limit(&closed(32)), Ok(f64::INFINITY));
+    for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let text = said(heat.model::<f64>(&closed(32), dt, &|_| 0.0));
+        assert!(text.contains(&format!("time_step is {dt}")), "{text}");
+    }
+    let mut open = heat.clone();
+    open.boundary.0[1][1] = Condition::Outflow;
+    assert!(of_heat(&open, &closed(32)).contains("second derivative"));
+    assert!(of_heat(&heat, &closed(9)).contains("9 points along y"));
+    if cfg!(feature = "implicit") {
+        assert!(heat.model::<f64>(&closed(32), 1e3, &|_| 0.0).is_ok());
+    } else {
+        let text = of_heat(&heat, &closed(32));
+        assert!(
+            text.contains("integrator = bdf2") && text.contains("feature `implicit`"),
+            "{text}"
+        );
+    }
+    let text = "crank-nicholson".parse::<TimeStepping>().unwrap_err();
+    assert!(text.contains("crank-nicolson") && text.contains("rk4"), "{text}");
+    assert_eq!("crank-nicolson".parse(), Ok(TimeStepping::from(Implicit::CrankNicolson)));
+    assert_eq!("ssp-rk3".parse(), Ok(TimeStepping::from(Integrator::SspRk3)));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use finegrain_framework::{Integrator, Settings, Simulation};
 use solution::{error, order, run};
 
 fn heat(order: Order, boundary: Boundary) -> Heat {
-    Heat { diffusivity: 0.3, order, integrator: Integrator::Rk4, boundary }
+    Heat { diffusivity: 0.3, order, integrator: Integrator::Rk4.into(), boundary }
 }
 
 /// A time step of at most `most` of the limit that divides `time`, and how often.
@@ -124,7 +124,7 @@ fn nothing_grows_at_the_limit() {
         let integrators = [Integrator::Euler, Integrator::Rk2, Integrator::SspRk3, Integrator::Rk4];
         for integrator in integrators {
             let boundary = Boundary::all(Condition::dirichlet(0.0));
-            let heat = Heat { integrator, ..heat(scheme, boundary) };
+            let heat = Heat { integrator: integrator.into(), ..heat(scheme, boundary) };
             let mesh = Mesh::new([side]);
             let limit = heat.time_step_limit(&mesh).unwrap();
             let rough = |x: [f64; 3]| (1e4 * x[0] + 1e3 * x[0] * x[0]).sin();

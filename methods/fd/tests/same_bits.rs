@@ -22,7 +22,7 @@ fn start(x: [f64; 3]) -> f64 {
 
 fn heat<T: Compiled>(order: Order, integrator: Integrator) -> Fd<T> {
     let (mesh, boundary) = brick();
-    let heat = Heat { diffusivity: 0.2, order, integrator, boundary };
+    let heat = Heat { diffusivity: 0.2, order, integrator: integrator.into(), boundary };
     let dt = 0.9 * heat.time_step_limit(&mesh).unwrap();
     heat.model(&mesh, dt, &start).unwrap()
 }
@@ -101,6 +101,33 @@ fn of_heat() {
     same_bits(|| heat::<f64>(Order::Second, Integrator::Euler));
     same_bits(|| heat::<f64>(Order::Sixth, Integrator::SspRk3));
     same_bits(|| heat::<f32>(Order::Fourth, Integrator::Rk2));
+}
+
+/// In the plane, where a factor is small.
+#[cfg(feature = "implicit")]
+fn implicit_heat<T: Compiled>(
+    order: Order,
+    scheme: finegrain_fd::Implicit,
+    side: impl Fn(usize, f64, f64) -> Side,
+) -> Fd<T> {
+    let (integrator, boundary) = (scheme.into(), brick().1);
+    let heat = Heat { diffusivity: 0.2, order, integrator, boundary };
+    heat.model(&Mesh::new([side(37, 0.0, 1.0), side(22, 0.0, 0.7)]), 0.1, &start).unwrap()
+}
+
+/// The last of a matrix that is not symmetric.
+#[cfg(feature = "implicit")]
+#[test]
+fn of_implicit_heat() {
+    use finegrain_fd::Implicit::{BackwardEuler, Bdf2, CrankNicolson};
+    same_bits(|| implicit_heat::<f64>(Order::Second, BackwardEuler, Side::ends));
+    same_bits(|| implicit_heat::<f64>(Order::Sixth, CrankNicolson, Side::ends));
+    same_bits(|| implicit_heat::<f32>(Order::Fourth, Bdf2, Side::ends));
+    same_bits(|| implicit_heat::<f64>(Order::Fourth, Bdf2, Side::cells));
+    restarts(|| implicit_heat::<f64>(Order::Sixth, BackwardEuler, Side::ends));
+    restarts(|| implicit_heat::<f64>(Order::Fourth, CrankNicolson, Side::ends));
+    restarts(|| implicit_heat::<f64>(Order::Fourth, Bdf2, Side::cells));
+    restarts(|| implicit_heat::<f32>(Order::Second, Bdf2, Side::ends));
 }
 
 #[test]

@@ -1,20 +1,35 @@
 //! Heat in a box by central differences.
 
-use finegrain_fd::{Compiled, Heat, Parts, measure};
-use finegrain_framework::Simulation;
+use finegrain_fd::{Boundary, Compiled, Condition, Data, Heat, Parts, Side, TimeStepping, measure};
 use finegrain_framework::run::{Every, Run, Summary};
 use finegrain_framework::space::Grid;
+use finegrain_framework::{Integrator, Simulation};
 
 use super::{FdScene, Flow};
 use crate::figure::Axis;
-use crate::scene::heat::{self, DIFFUSIVITY, HeatBox, TIME};
+use crate::scene::heat::{self, DIFFUSIVITY, HeatBox, Heating, TIME};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
 use crate::scene::{Precision, Report, SceneError};
 
+/// How time is stepped.
+const INTEGRATOR: Parameter = Parameter::choice(
+    "integrator",
+    &["rk4", "ssp-rk3", "rk2", "euler", "backward-euler", "crank-nicolson", "bdf2"],
+    "how time is stepped; the last three are implicit and need the cargo feature `implicit`",
+);
+
+const COURANT: Parameter = Parameter::number(
+    "courant",
+    0.8,
+    [1e-4, 1e6],
+    "",
+    "time step over the longest that is stable; of implicit steps, over that of euler",
+);
+
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
-    [&heat::PARAMETERS[..], &[super::ORDER, super::INTEGRATOR, super::COURANT]].concat()
+    [&heat::PARAMETERS[..], &[super::ORDER, INTEGRATOR, COURANT]].concat()
 }
 
 prepare_with!(build);
@@ -23,15 +38,28 @@ fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
 ) -> Result<FdScene<T, Spreading>, SceneError> {
-    let scene = HeatBox::new(parameters);
-    let (mesh, boundary) = super::unit_box(scene.dims, scene.resolution, scene.ends);
-    let equation = Heat {
-        diffusivity: DIFFUSIVITY,
-        order: super::order(parameters),
-        integrator: super::integrator(parameters),
-        boundary,
+    let scene = HeatBox::new(parameters)?;
+    let (mesh, boundary) = match scene.heating {
+        Heating::Wave(ends) | Heating::Step(ends) => {
+            super::unit_box(scene.dims, scene.resolution, ends)
+        }
+        Heating::Driven => {
+            let side = Side::ends(scene.resolution, 0.0, 1.0);
+            let driven = Data::varying(move |x, time| scene.temperature(x, time));
+            (super::in_directions(side, scene.dims), Boundary::all(Condition::Dirichlet(driven)))
+        }
     };
-    let longest = parameters.number("courant") * equation.time_step_limit(&mesh)?;
+    let integrator = parameters.choice("integrator").parse();
+    let integrator = integrator.unwrap_or(TimeStepping::Explicit(Integrator::Rk4));
+    let equation =
+        Heat { diffusivity: DIFFUSIVITY, order: super::order(parameters), integrator, boundary };
+    let limited = match integrator {
+        TimeStepping::Explicit(_) => equation.clone(),
+        TimeStepping::Implicit(_) => {
+            Heat { integrator: Integrator::Euler.into(), ..equation.clone() }
+        }
+    };
+    let longest = parameters.number("courant") * limited.time_step_limit(&mesh)?;
     let start = move |x| scene.temperature(x, 0.0);
     let fd = equation.model(&mesh, super::dividing(TIME, longest), &start)?;
     let description = super::description("heat", parameters, precision);
