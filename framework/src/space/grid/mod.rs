@@ -2,7 +2,7 @@
 
 mod rows;
 
-pub use rows::{Rows, RowsMut};
+pub use rows::{Rows, RowsMut, RowsOfMut};
 
 use crate::domain::{Domain, Partition, Piece, Span, SubDomain};
 use crate::viewable::{Geometry, Viewable};
