@@ -8,7 +8,7 @@ mod samples;
 
 use std::f64::consts::TAU;
 
-use finegrain::framework::pack::{Bypass, Pack, Targets, prefetch};
+use finegrain::framework::pack::{Bypass, Fill, Pack, Targets, fill, prefetch};
 use finegrain::framework::space::Grid;
 use finegrain::framework::*;
 use finegrain::lbm::{
@@ -222,7 +222,16 @@ impl<T: Real> pulp::WithSimd for CopyRow<'_, T> {
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let from = self.from.map(|from| T::Pack::<S>::packs(simd, from));
         let to = self.to.map(|to| T::Pack::<S>::packs_mut(simd, to));
-        let mut to = Targets::new(to, self.bypass);
+        fill(to, self.bypass, From::<T::Pack<S>>(from));
+    }
+}
+
+struct From<'a, P: Pack>([&'a [P::Vector]; COLUMNS]);
+
+impl<P: Pack> Fill<P::Vector, COLUMNS> for From<'_, P> {
+    #[inline(always)]
+    fn fill(self, to: &mut Targets<'_, P::Vector, COLUMNS>) {
+        let from = self.0;
         for i in 0..from[0].len() {
             let mut values = [from[0][i]; COLUMNS];
             for q in 0..COLUMNS {

@@ -6,9 +6,10 @@
 
 use std::marker::PhantomData;
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Pod;
 
 use crate::format::{Kind, Values};
+use crate::memory::{Line, Memory};
 
 /// Element type of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -114,11 +115,6 @@ pub enum Role {
     Rate,
 }
 
-/// One cache line: columns start on one, so that full-width loads do not straddle two.
-#[repr(C, align(64))]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(crate) struct Line([u8; 64]);
-
 /// One declared column and its memory.
 #[derive(Debug)]
 pub struct Column {
@@ -126,13 +122,7 @@ pub struct Column {
     role: Role,
     kind: ElementKind,
     kept: bool,
-    lines: Vec<Line>,
-}
-
-impl std::fmt::Debug for Line {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Line")
-    }
+    lines: Memory,
 }
 
 impl Column {
@@ -216,9 +206,8 @@ impl Columns {
     /// Copies one column to another of the same type.
     pub(crate) fn copy(&mut self, from: ColumnId, to: ColumnId) {
         let (from, to) = (from.0 as usize, to.0 as usize);
-        let mut lines = std::mem::take(&mut self.columns[to].lines);
-        lines.copy_from_slice(&self.columns[from].lines);
-        self.columns[to].lines = lines;
+        let [from, to] = self.columns.get_disjoint_mut([from, to]).expect("two columns of these");
+        to.lines.copy_from_slice(&from.lines);
     }
 
     /// Marks a column as living from one step to the next (an integrator that reuses the
@@ -238,7 +227,7 @@ impl Columns {
             role,
             kind,
             kept,
-            lines: vec![Line::zeroed(); Column::lines_for(kind, self.points)],
+            lines: Memory::new(self.columns.len(), Column::lines_for(kind, self.points)),
         });
         ColumnId((self.columns.len() - 1) as u16)
     }
@@ -271,7 +260,7 @@ impl Columns {
     pub fn values<H: Handle>(&self, handle: H) -> &[H::Element] {
         let column = &self.columns[handle.id().0 as usize];
         assert_eq!(column.kind, H::Element::KIND, "handle of other columns");
-        &bytemuck::cast_slice(&column.lines)[..self.points]
+        &bytemuck::cast_slice::<Line, _>(&column.lines)[..self.points]
     }
 
     /// Values of a column, to set an initial state or for whole-domain work.
@@ -281,19 +270,20 @@ impl Columns {
     pub fn values_mut<H: Handle>(&mut self, handle: H) -> &mut [H::Element] {
         let column = &mut self.columns[handle.id().0 as usize];
         assert_eq!(column.kind, H::Element::KIND, "handle of other columns");
-        &mut bytemuck::cast_slice_mut(&mut column.lines)[..self.points]
+        &mut bytemuck::cast_slice_mut::<Line, _>(&mut column.lines)[..self.points]
     }
 
     /// Values of a column as raw bytes in memory order (hash, checkpoint).
     pub fn bytes(&self, id: ColumnId) -> &[u8] {
         let column = &self.columns[id.0 as usize];
-        &bytemuck::cast_slice(&column.lines)[..self.points * column.kind.size()]
+        &bytemuck::cast_slice::<Line, _>(&column.lines)[..self.points * column.kind.size()]
     }
 
     /// As [`Columns::bytes`], to be overwritten (restart, re-sort).
     pub fn bytes_mut(&mut self, id: ColumnId) -> &mut [u8] {
         let column = &mut self.columns[id.0 as usize];
-        &mut bytemuck::cast_slice_mut(&mut column.lines)[..self.points * column.kind.size()]
+        &mut bytemuck::cast_slice_mut::<Line, _>(&mut column.lines)
+            [..self.points * column.kind.size()]
     }
 
     /// Values of a column of any element type, to be written to a file.
@@ -307,15 +297,13 @@ impl Columns {
         let (a, b) = (a.0 as usize, b.0 as usize);
         // Everything that reads columns relies on their memory being as long as their type wants.
         assert_eq!(self.columns[a].kind, self.columns[b].kind);
-        assert_ne!(a, b);
-        let lines = std::mem::take(&mut self.columns[a].lines);
-        let lines = std::mem::replace(&mut self.columns[b].lines, lines);
-        self.columns[a].lines = lines;
+        let [a, b] = self.columns.get_disjoint_mut([a, b]).expect("two columns of these");
+        std::mem::swap(&mut a.lines, &mut b.lines);
     }
 
     /// Exchanges a column's memory with `spare`, which is first brought to its size:
     /// a whole-domain stage writes the new values into `spare` and then installs them.
-    pub(crate) fn exchange_lines(&mut self, id: ColumnId, spare: &mut Vec<Line>) {
+    pub(crate) fn exchange_lines(&mut self, id: ColumnId, spare: &mut Memory) {
         let column = &mut self.columns[id.0 as usize];
         assert_eq!(spare.len(), column.lines.len());
         std::mem::swap(&mut column.lines, spare);

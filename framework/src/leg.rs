@@ -15,7 +15,7 @@ use crate::pack::Fence;
 use crate::stage::Fault;
 use crate::step::{Entry, Step, Stretch};
 use crate::trace::{Event, Trace};
-use crate::view::{Near, Own, Place, Rates, Slot, slots_of};
+use crate::view::{Near, Own, Place, Rates, Shifts, Slot, slots_of};
 
 /// What went wrong in a leg, and where.
 #[derive(Clone, Debug, PartialEq)]
@@ -230,7 +230,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         let table = tables.iter().find(|(k, _)| *k == key).expect("all keys are laid out");
         let shifts = match entry {
             Some(entry) => self.step.stages[self.step.entries[entry].stage].shifts(),
-            None => &[],
+            None => Shifts::NONE,
         };
         Place {
             domain: self.domain,

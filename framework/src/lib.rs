@@ -82,6 +82,7 @@ pub mod format;
 pub mod integrator;
 pub mod lanes;
 mod leg;
+mod memory;
 #[cfg(all(test, loom))]
 mod model_checks;
 pub mod pack;

@@ -9,7 +9,7 @@ mod bypass;
 mod prefetch;
 
 pub(crate) use bypass::Fence;
-pub use bypass::{Bypass, Targets};
+pub use bypass::{Bypass, Fill, Targets, fill};
 pub use prefetch::prefetch;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

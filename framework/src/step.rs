@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::columns::{ColumnId, ColumnSet, Columns, Handle, Rate, State};
 use crate::domain::Domain;
 use crate::stage::{Fault, Moment, RateStage, UpdateStage};
-use crate::view::{Near, Own, Rates};
+use crate::view::{Near, Own, Rates, Shifts};
 use crate::whole::{Whole, WholeStage};
 
 /// A rate stage whose scratch type is forgotten.
@@ -88,7 +88,7 @@ pub struct Stage<D: Domain>(Kind<D>);
 
 enum Kind<D: Domain> {
     Rate(Arc<dyn AnyRate<D>>, ColumnSet),
-    Update(Arc<dyn AnyUpdate<D>>, Arc<[(ColumnId, usize)]>),
+    Update(Arc<dyn AnyUpdate<D>>, Arc<Shifts>),
     Whole(Arc<SharedWhole<D>>),
 }
 
@@ -117,8 +117,8 @@ impl<D: Domain> Stage<D> {
 
     /// An update stage.
     pub fn update(stage: impl UpdateStage<D>) -> Self {
-        let shifts = AnyUpdate::shifts(&stage).into();
-        Self(Kind::Update(Arc::new(stage), shifts))
+        let shifts = AnyUpdate::shifts(&stage).into_iter().collect();
+        Self(Kind::Update(Arc::new(stage), Arc::new(shifts)))
     }
 
     /// A whole-domain stage, a linear solve say: all workers come back before it, so that there is no
@@ -166,10 +166,10 @@ impl<D: Domain> Stage<D> {
     }
 
     /// Columns that it owns with an offset, each with the shift.
-    pub(crate) fn shifts(&self) -> &[(ColumnId, usize)] {
+    pub(crate) fn shifts(&self) -> &Shifts {
         match &self.0 {
             Kind::Update(_, shifts) => shifts,
-            Kind::Rate(..) | Kind::Whole(_) => &[],
+            Kind::Rate(..) | Kind::Whole(_) => Shifts::NONE,
         }
     }
 
@@ -248,7 +248,7 @@ pub struct Step<D: Domain> {
     /// Columns of which the memory is owned with an offset somewhere in the step.
     pub(crate) displaced: ColumnSet,
     /// What the workers' last part owned with an offset, by the names of columns after the step.
-    pub(crate) last_shifts: Vec<(ColumnId, usize)>,
+    pub(crate) last_shifts: Shifts,
 }
 
 /// Parts of a step that are done in one go.
@@ -272,7 +272,7 @@ impl<D: Domain> Step<D> {
                 swapped: 0,
                 stretches: Vec::new(),
                 displaced: ColumnSet::default(),
-                last_shifts: Vec::new(),
+                last_shifts: Shifts::default(),
             },
         }
     }
@@ -318,7 +318,7 @@ impl<D: Domain> Step<D> {
     /// Finds what is owned with an offset.
     fn displace(&mut self) {
         let mut by_memory: Vec<(ColumnId, usize)> = Vec::new();
-        for &(column, shift) in self.stages.iter().flat_map(Stage::shifts) {
+        for (column, shift) in self.stages.iter().flat_map(|stage| stage.shifts().iter()) {
             for column in [Some(column), self.partner(column)].into_iter().flatten() {
                 let other = by_memory.iter().find(|(known, s)| *known == column && *s != shift);
                 assert!(other.is_none(), "column {} is owned with two offsets", column.0);
@@ -335,7 +335,7 @@ impl<D: Domain> Step<D> {
             pair.and_then(|_| self.partner(column)).unwrap_or(column)
         };
         let shifts = self.stages[last.stage].shifts();
-        self.last_shifts = shifts.iter().map(|&(column, shift)| (renamed(column), shift)).collect();
+        self.last_shifts = shifts.iter().map(|(column, shift)| (renamed(column), shift)).collect();
     }
 
     /// The column that a column is exchanged with.

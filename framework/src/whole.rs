@@ -6,7 +6,7 @@ use crate::columns::{ColumnSet, Columns};
 use crate::domain::Domain;
 use crate::stage::Fault;
 use crate::team::Team;
-use crate::view::{Near, Place, Slot, slots_of};
+use crate::view::{Near, Place, Shifts, Slot, slots_of};
 
 /// Everything, for one worker at a time, with a team to work with.
 pub struct Whole<'a, D: Domain> {
@@ -56,7 +56,7 @@ impl<D: Domain> Whole<'_, D> {
         values.resize(partition.len() * N, 0.0);
         let (domain, slots) = (&*self.domain, &**slots);
         self.team.for_each_chunk(values, N, |id, values| {
-            let (shifts, displaced) = (&[][..], ColumnSet::default());
+            let (shifts, displaced) = (Shifts::NONE, ColumnSet::default());
             let activity = &UNWATCHED;
             let place = Place { domain, partition, id, slots, shifts, displaced, activity };
             // SAFETY: the partition is sealed and has as many points as the columns, which are

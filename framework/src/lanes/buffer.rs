@@ -6,7 +6,7 @@ use std::ops::{Deref, DerefMut};
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::columns::Line;
+use crate::memory::Line;
 
 /// A vector that begins on a cache line, so that no full-width load or store of its lanes straddles
 /// two, and no [`Record`](super::Record) lies in two.

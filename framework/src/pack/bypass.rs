@@ -62,8 +62,32 @@ impl std::fmt::Debug for Fence {
     }
 }
 
-/// Rows of vectors that are written side by side, past the caches if there is leave to and the
-/// processor can. When it is dropped, what was written is visible to others.
+/// What fills rows of vectors. A trait and not a closure: it is to be inlined where the instruction set
+/// is known.
+pub trait Fill<V, const N: usize> {
+    /// Writes the vectors.
+    fn fill(self, targets: &mut Targets<'_, V, N>);
+}
+
+/// Lets `task` write rows of vectors side by side, past the caches if there is leave to and the
+/// processor can. When it returns, or unwinds, what was written is visible to others.
+///
+/// Worth it past the caches only if whole lines are written, one vector after the other.
+#[inline(always)]
+pub fn fill<V: Pod, const N: usize>(
+    to: [&mut [V]; N],
+    bypass: Option<Bypass<'_>>,
+    task: impl Fill<V, N>,
+) {
+    let mut is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>());
+    for to in &to {
+        is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
+    }
+    // Lent, so that nobody can keep it from being dropped here.
+    task.fill(&mut Targets { to, is_past, fence: PhantomData });
+}
+
+/// Rows of vectors that are written side by side, inside [`fill`].
 #[derive(Debug)]
 pub struct Targets<'a, V, const N: usize> {
     to: [&'a mut [V]; N],
@@ -83,17 +107,7 @@ impl<V, const N: usize> Drop for Targets<'_, V, N> {
     }
 }
 
-impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
-    /// Worth it past the caches only if whole lines are written, one vector after the other.
-    #[inline(always)]
-    pub fn new(to: [&'a mut [V]; N], bypass: Option<Bypass<'a>>) -> Self {
-        let mut is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>());
-        for to in &to {
-            is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
-        }
-        Self { to, is_past, fence: PhantomData }
-    }
-
+impl<V: Pod, const N: usize> Targets<'_, V, N> {
     /// Writes vector `i` of every row.
     ///
     /// # Panics
@@ -105,11 +119,12 @@ impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
             use std::arch::x86_64::{__m256i, __m512i, _mm256_stream_si256, _mm512_stream_si512};
             for n in 0..N {
                 let to = std::ptr::from_mut(&mut self.to[n][i]);
-                // SAFETY: `new` saw leave for as many bytes as a vector has, which there is only on
+                // SAFETY: `fill` saw leave for as many bytes as a vector has, which there is only on
                 // processors with these instructions, and that vectors are aligned. This one is borrowed
                 // exclusively, and plain bytes. Nobody else sees it before the fence: that of `drop`, on
-                // this thread, which `self` does not leave, or, should `self` be forgotten, that at the
-                // end of the stage.
+                // this thread, which `self` does not leave. `fill` drops it, while the rows are still
+                // borrowed: it only lends it, for a lifetime of its own, so that it cannot be exchanged
+                // for another one.
                 unsafe {
                     match size_of::<V>() {
                         64 => _mm512_stream_si512(to.cast::<__m512i>(), bytemuck::cast(values[n])),
@@ -130,6 +145,16 @@ impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
 mod tests {
     use super::*;
 
+    struct All<V>(V);
+
+    impl<V: Pod> Fill<V, 1> for All<V> {
+        fn fill(self, targets: &mut Targets<'_, V, 1>) {
+            for i in 0..targets.to[0].len() {
+                targets.write(i, [self.0]);
+            }
+        }
+    }
+
     /// Whatever the size and place, what is written is there.
     #[test]
     fn what_is_written_past_the_caches_is_there() {
@@ -143,13 +168,7 @@ mod tests {
                 let fence = Fence::new(pays);
                 assert!(pays || fence.bypass().is_none());
                 let places = bytemuck::cast_slice_mut::<u8, V>(&mut lines.0[size..]);
-                let count = places.len();
-                let mut targets = Targets::new([places], fence.bypass());
-                for i in 0..count {
-                    targets.write(i, [value]);
-                }
-                drop(targets);
-                drop(fence);
+                fill([places], fence.bypass(), All(value));
                 assert!(lines.0[..size].iter().all(|&b| b == 7));
                 assert!(
                     bytemuck::cast_slice::<u8, V>(&lines.0[size..]).iter().all(|v| *v == value)

@@ -25,10 +25,13 @@
 mod near;
 mod own;
 mod part;
+mod shifts;
 
 pub use near::{Near, Reach, View};
 pub use own::{Own, Rates};
 pub use part::{Part, PartMut};
+
+pub(crate) use shifts::Shifts;
 
 use crate::activity::Activity;
 use crate::columns::{ColumnId, ColumnSet, Columns, Element, ElementKind};
@@ -59,7 +62,7 @@ pub(crate) struct Place<'a, D> {
     pub id: usize,
     pub slots: &'a [Slot],
     /// What is owned with an offset, and by which shift of the partition.
-    pub shifts: &'a [(ColumnId, usize)],
+    pub shifts: &'a Shifts,
     /// What has an offset somewhere in the step.
     pub displaced: ColumnSet,
     /// What the worker that works on it is doing.
@@ -76,8 +79,8 @@ impl<D> Copy for Place<'_, D> {}
 impl<'a, D> Place<'a, D> {
     /// The points of a column that the sub-domain owns.
     fn spans(&self, column: ColumnId) -> &'a [Span] {
-        match self.shifts.iter().find(|(id, _)| *id == column) {
-            Some(&(_, shift)) => self.partition.shifted(shift, self.id),
+        match self.shifts.of(column) {
+            Some(shift) => self.partition.shifted(shift, self.id),
             None => self.partition.spans(self.id),
         }
     }

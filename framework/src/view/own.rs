@@ -118,7 +118,7 @@ impl<'a, D: Domain> Own<'a, D> {
 
     /// Whether it owns other points of a column.
     pub(crate) fn is_shifted(&self, id: ColumnId) -> bool {
-        self.place.shifts.iter().any(|(column, _)| *column == id)
+        self.place.shifts.of(id).is_some()
     }
 
     /// Own rates.

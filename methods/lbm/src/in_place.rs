@@ -74,7 +74,7 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
         let Local { collider, sites, .. } = &self.local;
         let [nx, ny, _] = own.domain().shape();
         let time = moment.time + moment.dt;
-        let mut columns = self.slots.map(|column| own.rows_mut(column));
+        let mut columns = own.rows_of_mut(self.slots);
         let mut group: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
         for (j, k) in own.sub_domain().rows() {
             let number = k * ny + j;
@@ -83,10 +83,7 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
                 continue;
             }
             self.local.accelerate(scratch, nx, (j, k), time);
-            let mut rows = none::<T, Q>();
-            for (row, column) in rows.iter_mut().zip(&mut columns) {
-                *row = column.row(j, k);
-            }
+            let mut rows = columns.row(j, k);
             for [start, end] in runs.iter().flat_map(|run| run.parts::<T>(nx)) {
                 let count = end - start;
                 let first = |q: usize| start as isize + found(L::VELOCITIES[q], q)[0] as isize;

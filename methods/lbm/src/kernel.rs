@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use finegrain_framework::Real;
-use finegrain_framework::pack::{Bypass, Pack, Targets, prefetch};
+use finegrain_framework::pack::{Bypass, Fill, Pack, Targets, fill, prefetch};
 
 use crate::collision::Collide;
 use crate::lattice::Lattice;
@@ -61,9 +61,13 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Collider<T, Q> for K
 
 /// Where populations arrive, and leave from.
 trait Memory<T: Real, const Q: usize> {
-    /// The same in packs.
-    type Packs<V: Pack<Scalar = T>>: Slots<V, Q>;
-    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> Self::Packs<V>;
+    /// Lends it in packs.
+    fn lend<V: Pack<Scalar = T>>(self, simd: V::Simd, task: impl Pass<V, Q>);
+}
+
+/// What is done with all packs of populations.
+trait Pass<V: Pack, const Q: usize> {
+    fn over(self, slots: &mut impl Slots<V, Q>);
 }
 
 /// Packs of populations that arrive, and leave.
@@ -83,11 +87,9 @@ struct Apart<'a, 'b, T, const Q: usize> {
     bypass: Option<Bypass<'a>>,
 }
 
-impl<'a, T: Real, const Q: usize> Memory<T, Q> for Apart<'a, '_, T, Q> {
-    type Packs<V: Pack<Scalar = T>> = ApartPacks<'a, V, Q>;
-
+impl<T: Real, const Q: usize> Memory<T, Q> for Apart<'_, '_, T, Q> {
     #[inline(always)]
-    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> ApartPacks<'a, V, Q> {
+    fn lend<V: Pack<Scalar = T>>(self, simd: V::Simd, task: impl Pass<V, Q>) {
         let mut from: [&[V::Vector]; Q] = [&[]; Q];
         for q in 0..Q {
             from[q] = V::packs(simd, self.from[q]);
@@ -96,16 +98,29 @@ impl<'a, T: Real, const Q: usize> Memory<T, Q> for Apart<'a, '_, T, Q> {
         for (packs, row) in to.iter_mut().zip(self.to) {
             *packs = V::packs_mut(simd, row);
         }
-        ApartPacks { from, to: Targets::new(to, self.bypass) }
+        fill(to, self.bypass, From::<V, _, Q> { from, task });
     }
 }
 
-struct ApartPacks<'a, V: Pack, const Q: usize> {
+/// A task, and where it finds what arrives.
+struct From<'a, V: Pack, P, const Q: usize> {
     from: [&'a [V::Vector]; Q],
-    to: Targets<'a, V::Vector, Q>,
+    task: P,
 }
 
-impl<V: Pack, const Q: usize> Slots<V, Q> for ApartPacks<'_, V, Q> {
+impl<V: Pack, P: Pass<V, Q>, const Q: usize> Fill<V::Vector, Q> for From<'_, V, P, Q> {
+    #[inline(always)]
+    fn fill(self, to: &mut Targets<'_, V::Vector, Q>) {
+        self.task.over(&mut ApartPacks::<V, Q> { from: self.from, to });
+    }
+}
+
+struct ApartPacks<'a, 'b, V: Pack, const Q: usize> {
+    from: [&'a [V::Vector]; Q],
+    to: &'a mut Targets<'b, V::Vector, Q>,
+}
+
+impl<V: Pack, const Q: usize> Slots<V, Q> for ApartPacks<'_, '_, V, Q> {
     #[inline(always)]
     fn count(&self) -> usize {
         self.from[0].len()
@@ -136,16 +151,14 @@ struct InPlace<'a, T, const Q: usize> {
     slots: [&'a mut [T]; Q],
 }
 
-impl<'a, T: Real, const Q: usize> Memory<T, Q> for InPlace<'a, T, Q> {
-    type Packs<V: Pack<Scalar = T>> = InPlacePacks<'a, V, Q>;
-
+impl<T: Real, const Q: usize> Memory<T, Q> for InPlace<'_, T, Q> {
     #[inline(always)]
-    fn packs<V: Pack<Scalar = T>>(self, simd: V::Simd) -> InPlacePacks<'a, V, Q> {
+    fn lend<V: Pack<Scalar = T>>(self, simd: V::Simd, task: impl Pass<V, Q>) {
         let mut slots = none::<V::Vector, Q>();
         for (packs, row) in slots.iter_mut().zip(self.slots) {
             *packs = V::packs_mut(simd, row);
         }
-        InPlacePacks { slots }
+        task.over(&mut InPlacePacks::<V, Q> { slots });
     }
 }
 
@@ -195,24 +208,25 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, M: Memory<T, Q>, const Q: usize> pul
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { kernel, memory, acceleration } = self;
-        kernel.collide::<T::Pack<S>, M, Q>(simd, memory, acceleration);
+        memory.lend::<T::Pack<S>>(simd, Collisions { simd, kernel, acceleration });
     }
 }
 
-impl<L, C> Kernel<L, C> {
+/// The same for the instruction set that was found.
+struct Collisions<'a, S, T, L, C> {
+    simd: S,
+    kernel: &'a Kernel<L, C>,
+    acceleration: Varying<'a, T>,
+}
+
+impl<V: Pack, L: Lattice<Q>, C: Collide<V::Scalar>, const Q: usize> Pass<V, Q>
+    for Collisions<'_, V::Simd, V::Scalar, L, C>
+{
     #[inline(always)]
-    fn collide<V: Pack, M: Memory<V::Scalar, Q>, const Q: usize>(
-        &self,
-        simd: V::Simd,
-        memory: M,
-        acceleration: Varying<'_, V::Scalar>,
-    ) where
-        L: Lattice<Q>,
-        C: Collide<V::Scalar>,
-    {
-        let [x, y, z] = self.uniform.map(V::Scalar::of);
+    fn over(self, slots: &mut impl Slots<V, Q>) {
+        let Self { simd, kernel, acceleration } = self;
+        let [x, y, z] = kernel.uniform.map(V::Scalar::of);
         let uniform = [V::splat(simd, x), V::splat(simd, y), V::splat(simd, z)];
-        let mut slots = memory.packs::<V>(simd);
         for i in 0..slots.count() {
             let vectors = slots.arrived(i);
             let mut f = [uniform[0]; Q];
@@ -225,8 +239,8 @@ impl<L, C> Kernel<L, C> {
                     here[a] = V::of(simd, V::packs(simd, varying[a])[i]);
                 }
             }
-            let omega = self.relaxation.rate::<L, V, Q>(&f);
-            slots.leave(i, self.collision.collide::<L, V, Q>(f, here, omega));
+            let omega = kernel.relaxation.rate::<L, V, Q>(&f);
+            slots.leave(i, kernel.collision.collide::<L, V, Q>(f, here, omega));
         }
     }
 }

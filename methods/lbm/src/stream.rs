@@ -49,7 +49,7 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> RateStage<Grid> for Stream<T, L, Q>
         let time = moment.time + moment.dt;
         let bypass = rates.bypass();
         let views: [View<'_, T>; Q] = self.now.map(|column| near.state(column));
-        let mut next = self.next.map(|rate| rates.rows(rate));
+        let mut next = rates.rows_of(self.next);
         let mut group: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
         for (j, k) in near.sub_domain().rows() {
             let number = k * ny + j;
@@ -63,10 +63,7 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> RateStage<Grid> for Stream<T, L, Q>
             for q in 0..Q {
                 from[q] = around.source(q);
             }
-            let mut to = none::<T, Q>();
-            for (row, column) in to.iter_mut().zip(&mut next) {
-                *row = column.row(j, k);
-            }
+            let mut to = next.row(j, k);
             for [start, end] in runs.iter().flat_map(|run| run.parts::<T>(nx)) {
                 let mut sources: [&[T]; Q] = [&[]; Q];
                 for (q, wrapped) in group.iter_mut().enumerate() {

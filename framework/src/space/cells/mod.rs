@@ -21,8 +21,9 @@ mod table;
 pub use block::{Cell, CellBlock, Run};
 pub use region::Region;
 
-use crate::columns::{Columns, Handle, Line, State};
+use crate::columns::{Columns, Handle, State};
 use crate::domain::{Domain, Partition};
+use crate::memory::{Line, Memory};
 use crate::real::Real;
 use crate::stage::Fault;
 use crate::team::Team;
@@ -64,7 +65,7 @@ pub struct Cells<T> {
     block_table: KeyTable,
     partition: Partition,
     sorter: Sorter,
-    spare: Vec<Line>,
+    spare: Memory,
     near_axes: [Vec<i64>; 3],
     near_blocks: Vec<u32>,
 }
@@ -121,7 +122,7 @@ impl<T: Real> Cells<T> {
             block_table: KeyTable::default(),
             partition: Partition::new(0),
             sorter: Sorter::default(),
-            spare: Vec::new(),
+            spare: Memory::new(0, 0),
             near_axes: Default::default(),
             near_blocks: Vec::new(),
         })

@@ -1,10 +1,9 @@
 //! Columns in the order of the sorted particles.
 
-use bytemuck::Zeroable;
-
 use super::Cells;
 use super::sort::Sorter;
-use crate::columns::{Columns, ElementKind, Line};
+use crate::columns::{Columns, ElementKind};
+use crate::memory::Line;
 use crate::real::Real;
 use crate::team::Team;
 
@@ -17,10 +16,10 @@ impl<T: Real> Cells<T> {
             if !column.is_kept() {
                 continue;
             }
-            self.spare.resize(columns.lines(id), Line::zeroed());
+            self.spare.resize(columns.lines(id));
             let from = columns.bytes(id);
             let sorter = &self.sorter;
-            let to: &mut [u8] = bytemuck::cast_slice_mut(&mut self.spare);
+            let to: &mut [u8] = bytemuck::cast_slice_mut::<Line, u8>(&mut self.spare);
             let to = &mut to[..from.len()];
             match kind.size() {
                 8 => gather::<u64>(team, sorter, from, to),

@@ -63,6 +63,32 @@ impl<T> RowsMut<'_, T> {
     }
 }
 
+/// A tile's own rows of several columns, to be written, for stages that write many.
+pub struct RowsOfMut<'a, T, const N: usize> {
+    tile: Tile<'a>,
+    parts: [PartMut<'a, T>; N],
+    /// Of each column, whether these are other rows than the tile's, one by one.
+    is_shifted: [bool; N],
+}
+
+impl<T, const N: usize> RowsOfMut<'_, T, N> {
+    /// Row j of plane k of each column, as [`RowsMut::row`].
+    ///
+    /// # Panics
+    /// As [`RowsMut::row`].
+    #[inline]
+    pub fn row(&mut self, j: usize, k: usize) -> [&mut [T]; N] {
+        let (span, range) = place(&self.tile, j, k);
+        let shifted = span * self.tile.rows.len() + j - self.tile.rows.start;
+        let mut rows = std::array::from_fn(|_| <&mut [T]>::default());
+        for ((row, part), is_shifted) in rows.iter_mut().zip(&mut self.parts).zip(self.is_shifted) {
+            *row =
+                if is_shifted { part.span(shifted) } else { &mut part.span(span)[range.clone()] };
+        }
+        rows
+    }
+}
+
 /// A tile's own rows of one column, read only.
 pub struct OwnRows<'a, T> {
     tile: Tile<'a>,
@@ -137,6 +163,21 @@ impl<'a> Rates<'a, Grid> {
             is_shifted: false,
         }
     }
+
+    /// The tile's own rows of several rate columns.
+    ///
+    /// # Panics
+    /// As [`Rates::column`].
+    pub fn rows_of<T: Element, const N: usize>(
+        &mut self,
+        columns: [Rate<T>; N],
+    ) -> RowsOfMut<'a, T, N> {
+        RowsOfMut {
+            tile: crate::Domain::sub_domain(self.domain(), self.id()),
+            is_shifted: [false; N],
+            parts: columns.map(|column| self.column(column)),
+        }
+    }
 }
 
 impl<'a> Own<'a, Grid> {
@@ -147,6 +188,21 @@ impl<'a> Own<'a, Grid> {
     pub fn rows_mut<T: Element>(&mut self, column: State<T>) -> RowsMut<'a, T> {
         let is_shifted = self.is_shifted(column.id());
         RowsMut { tile: self.sub_domain(), part: self.state_mut(column), is_shifted }
+    }
+
+    /// The tile's own rows of several state columns, to be advanced.
+    ///
+    /// # Panics
+    /// As [`Own::state_mut`].
+    pub fn rows_of_mut<T: Element, const N: usize>(
+        &mut self,
+        columns: [State<T>; N],
+    ) -> RowsOfMut<'a, T, N> {
+        RowsOfMut {
+            tile: self.sub_domain(),
+            is_shifted: columns.map(|column| self.is_shifted(column.id())),
+            parts: columns.map(|column| self.state_mut(column)),
+        }
     }
 
     /// The tile's own rows of a rate column.
