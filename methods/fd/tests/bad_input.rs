@@ -127,6 +127,7 @@ fn a_flow_that_is_none() {
         viscosity: 0.1,
         acceleration: [0.0; 3],
         wall_velocity: [[[0.0; 3]; 2]; 3],
+        bodies: Vec::new(),
         order: StaggeredOrder::Second,
         integrator: Integrator::Rk4,
         courant: 0.8,

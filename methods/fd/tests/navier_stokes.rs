@@ -14,6 +14,7 @@ fn flow(viscosity: f64, order: StaggeredOrder) -> NavierStokes {
         viscosity,
         acceleration: [0.0; 3],
         wall_velocity: [[[0.0; 3]; 2]; 3],
+        bodies: Vec::new(),
         order,
         integrator: Integrator::Rk4,
         courant: 0.8,

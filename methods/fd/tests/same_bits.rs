@@ -65,6 +65,7 @@ fn flow<T: Compiled>(order: StaggeredOrder, integrator: Integrator) -> Fd<T> {
         viscosity: 0.01,
         acceleration,
         wall_velocity,
+        bodies: Vec::new(),
         order,
         integrator,
         courant: 0.9,

@@ -25,6 +25,7 @@ pub fn equation(parameters: &Parameters, viscosity: f64, order: StaggeredOrder) 
         viscosity,
         acceleration: [0.0; 3],
         wall_velocity: [[[0.0; 3]; 2]; 3],
+        bodies: Vec::new(),
         order,
         integrator: super::integrator(parameters),
         courant: parameters.number("courant"),
