@@ -25,6 +25,7 @@ pub mod advection;
 pub mod burgers;
 pub mod cavity;
 pub mod channel;
+pub mod cylinder;
 pub mod double_shear_layer;
 pub mod heat;
 pub mod sod;
