@@ -155,6 +155,24 @@ fn the_cavity_converges_in_second_order_on_the_lines_through_the_middle() {
     }
 }
 
+/// Creeping and with inertia. The drag scatters with how the surface lies, the profiles are of second order.
+#[test]
+fn flow_through_cylinders() {
+    let inertial = [("viscosity", "1e-6"), ("body_acceleration", "1.5e-7")];
+    for settings in [&[][..], &inertial] {
+        let [coarse, fine] = ["20", "40"].map(|n| {
+            let settings = [settings, &[("resolution", n)]].concat();
+            let report = run("cylinder", &settings, Orders::default());
+            assert!(report.errors["momentum_balance"].abs() < 1e-3, "{:?}", report.errors);
+            assert!(report.results["divergence"] < 1e-14, "{:?}", report.results);
+            report.errors
+        });
+        assert!(fine["drag_k"].abs() < 0.004, "{fine:?}");
+        let measured = (coarse["profiles_l2"] / fine["profiles_l2"]).log2();
+        assert!(measured > 1.7, "{measured} {coarse:?} {fine:?}");
+    }
+}
+
 #[test]
 fn layers_of_shear_roll_up_as_they_should() {
     let report = run("double-shear-layer", &[("resolution", "64")], Orders::default());
@@ -173,12 +191,23 @@ fn a_checkpoint_is_gone_on_from_with_the_same_bits() {
         let settings = [("ends", "driven"), ("integrator", "bdf2"), ("courant", "20")];
         runs::assert_goes_on_with_the_same_bits("fd", "heat", &settings);
     }
+    runs::assert_goes_on_with_the_same_bits("fd", "cylinder", &[("resolution", "20")]);
 }
 
 #[test]
 fn a_time_step_past_the_limit_is_refused_with_the_limit() {
-    let scenes =
-        ["heat", "wave", "advection", "zalesak", "burgers", "sod", "toro", "cavity", "couette"];
+    let scenes = [
+        "heat",
+        "wave",
+        "advection",
+        "zalesak",
+        "burgers",
+        "sod",
+        "toro",
+        "cavity",
+        "couette",
+        "cylinder",
+    ];
     for scene in scenes {
         let found = Scene::find(scene).unwrap();
         let parameters = found.set_for(Some("fd"), [("courant", "1.2")]).unwrap();

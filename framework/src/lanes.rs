@@ -370,7 +370,7 @@ lanes!(
 
 #[inline(always)]
 fn assert_whole_groups<T, const N: usize>(length: usize, lanes: [&[T]; N]) {
-    let mut is_whole = length % SUMS == 0;
+    let mut is_whole = length.is_multiple_of(SUMS);
     for lanes in lanes {
         is_whole &= lanes.len() == length;
     }

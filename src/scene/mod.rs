@@ -204,6 +204,7 @@ pub const SCENES: &[Scene] = &[
         methods: &[
             Method::sph(sph::cylinder::parameters, sph::cylinder::prepare),
             Method::lbm(lbm::cylinder::parameters, lbm::cylinder::prepare),
+            Method::fd(fd::cylinder::parameters, fd::cylinder::prepare),
         ],
     },
     Scene {

@@ -95,6 +95,36 @@ pub enum FdError {
         /// Why.
         cause: String,
     },
+    /// A body makes no sense, or does not fit the mesh.
+    #[error("body {number}: {cause}")]
+    Body {
+        /// Which, from 0.
+        number: usize,
+        /// Why.
+        cause: String,
+    },
+    /// A body lies over an end of the mesh, or too near to it.
+    #[error(
+        "body {number} is less than two cells from an end of {axis}, or lies over it: there must be room for the flow \
+         around it, or the axis must be periodic"
+    )]
+    BodyAtEnd {
+        /// Which, from 0.
+        number: usize,
+        /// The axis.
+        axis: char,
+    },
+    /// Bodies are too near to each other.
+    #[error(
+        "the gap between body {number} and another, or itself, at {position:?} m is narrower than the mesh resolves: \
+         there must be two cells at least"
+    )]
+    Gap {
+        /// One of the bodies, from 0.
+        number: usize,
+        /// Where, m.
+        position: [f64; 3],
+    },
     /// The state at the beginning is not a number somewhere.
     #[error("the initial {field} at {position:?} m is {value}; it must be {range}")]
     Start {

@@ -56,6 +56,20 @@ pub fn totals<T: Compiled>(
     Totals { integral, square, least: -least, most }
 }
 
+/// Force of the fluid on body number `body` of an incompressible flow, over the density, m^3/s^2; the derived fields
+/// must be up to date ([`finegrain_framework::Simulation::derive`]).
+///
+/// # Panics
+/// If there is no such body.
+pub fn force_on_body<T: Compiled>(
+    whole: &Whole<'_, Grid>,
+    parts: &Parts<T>,
+    body: usize,
+) -> [f64; 3] {
+    let immersed = parts.immersed.as_ref().expect("a flow with bodies");
+    immersed.force(whole.columns, body)
+}
+
 /// Largest magnitude of a derived field, which must be up to date; NaN if there is one.
 pub fn largest<T: Compiled>(whole: &mut Whole<'_, Grid>, field: Rate<T>) -> f64 {
     let [most] = whole.max(|near| {

@@ -19,7 +19,7 @@ use crate::equation::wave::Waves;
 use crate::error::FdError;
 use crate::line::{Ends, Line};
 use crate::mesh::{AXES, Mesh, Side, Spread};
-use crate::navier_stokes::{Fields, Stages};
+use crate::navier_stokes::{Fields, Immersed, Stages};
 use crate::operator::face::{Face, Upwind1, Upwind3, Weno5, Weno5Z};
 use crate::operator::sbp::Closure;
 use crate::operator::staggered::StaggeredOrder;
@@ -52,6 +52,8 @@ pub struct Parts<T: Real> {
     pub derived: Vec<Rate<T>>,
     /// Weights of the points along x, y and z in integrals: those of the norm of the difference operators.
     pub weights: [Vec<f64>; 3],
+    /// Bodies in the flow.
+    pub(crate) immersed: Option<Immersed<T>>,
 }
 
 /// Brings the parts of a model together.
@@ -204,7 +206,8 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
             *weights = norm(side, order);
         }
         let mesh = mesh.clone();
-        let parts = Parts { mesh, unknowns, rates: out, derived: Vec::new(), weights };
+        let (derived, immersed) = (Vec::new(), None);
+        let parts = Parts { mesh, unknowns, rates: out, derived, weights, immersed };
         Ok(Fd { model, parts })
     }
 
@@ -284,7 +287,7 @@ pub(crate) fn norm(side: &Side, order: Order) -> Vec<f64> {
 pub trait Compiled: Real + FftNum {
     /// The stages of incompressible flow.
     #[doc(hidden)]
-    fn navier_stokes(fields: &Fields<Self>) -> Stages;
+    fn navier_stokes(fields: &Fields<Self>) -> Result<Stages, FdError>;
 
     /// The stage of the heat equation.
     #[doc(hidden)]
@@ -348,7 +351,7 @@ macro_rules! compiled {
     ($($scalar:ident),*) => {
         $(
             impl Compiled for $scalar {
-                fn navier_stokes(fields: &Fields<Self>) -> Stages {
+                fn navier_stokes(fields: &Fields<Self>) -> Result<Stages, FdError> {
                     match (fields.dims(), fields.order) {
                         (2, StaggeredOrder::Second) => fields.stages::<2, 1>(),
                         (2, StaggeredOrder::Fourth) => fields.stages::<2, 2>(),

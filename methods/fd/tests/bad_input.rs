@@ -1,10 +1,11 @@
 //! Bad input gets an error that names what and where, and never a panic.
 
 use finegrain_fd::{
-    Advection, Boundary, Burgers, Condition, Drift, Face, FdError, Gas, GasEnd, GasState, Heat,
-    Implicit, Mesh, NavierStokes, Order, Side, StaggeredOrder, TimeStepping, Wave,
+    Advection, Body, Boundary, Burgers, Condition, Drift, Face, FdError, Gas, GasEnd, GasState,
+    Heat, Implicit, Mesh, NavierStokes, Order, Side, StaggeredOrder, TimeStepping, Wave,
 };
 use finegrain_framework::Integrator;
+use finegrain_framework::shape::{Axis, Shape};
 
 fn said<M>(result: Result<M, FdError>) -> String {
     match result {
@@ -149,11 +150,59 @@ fn a_gas_that_is_none() {
 }
 
 #[test]
+fn bodies_that_do_not_fit() {
+    let of = |bodies: &[(Shape, [f64; 3])], order, mesh: &Mesh| {
+        let body = |&(shape, surface_velocity)| Body { shape, surface_velocity };
+        let flow = NavierStokes {
+            viscosity: 0.1,
+            acceleration: [0.0; 3],
+            wall_velocity: [[[0.0; 3]; 2]; 3],
+            bodies: bodies.iter().map(body).collect(),
+            order,
+            integrator: Integrator::Rk4,
+            courant: 0.8,
+        };
+        said(flow.model::<f64>(mesh, &|_| [0.0; 3]))
+    };
+    let disc = |x: f64, y: f64, radius: f64| {
+        (Shape::Cylinder { axis: Axis::Z, centre: [x, y, 0.0], radius }, [0.0; 3])
+    };
+    let second = |bodies: &[_]| {
+        let mesh = Mesh::new([Side::periodic(32, 0.0, 1.0), Side::cells(32, 0.0, 1.0)]);
+        of(bodies, StaggeredOrder::Second, &mesh)
+    };
+    let text = second(&[disc(0.5, 0.5, 0.2), disc(0.1, 0.1, -0.1)]);
+    assert!(text.contains("body 1") && text.contains("not -0.1"), "{text}");
+    let (shape, _) = disc(0.5, 0.5, 0.2);
+    let text = second(&[(shape, [0.0, f64::NAN, 0.0])]);
+    assert!(text.contains("surface_velocity is [0.0, NaN, 0.0]"), "{text}");
+    for y in [0.05, 0.95, 0.21] {
+        let text = second(&[disc(0.5, y, 0.2)]);
+        assert!(text.contains("body 0") && text.contains("end of y"), "{y}: {text}");
+    }
+    let plane = Shape::HalfSpace { point: [0.0, 0.3, 0.0], outward: [0.0, 1.0, 0.0] };
+    assert!(second(&[(plane, [0.0; 3])]).contains("end of y"));
+    let text = second(&[disc(0.2, 0.5, 0.15), disc(0.53, 0.5, 0.15)]);
+    assert!(text.contains("narrower than the mesh resolves"), "{text}");
+    let text = second(&[disc(0.5, 0.5, 0.02)]);
+    assert!(text.contains("too coarse"), "{text}");
+    let box_of = |dims: usize| match dims {
+        2 => Mesh::new([Side::periodic(32, 0.0, 1.0); 2]),
+        _ => Mesh::new([Side::periodic(32, 0.0, 1.0); 3]),
+    };
+    for (order, dims) in [(StaggeredOrder::Fourth, 2), (StaggeredOrder::Second, 3)] {
+        let text = of(&[disc(0.5, 0.5, 0.2)], order, &box_of(dims));
+        assert!(text.contains("two directions and operators of order 2"), "{text}");
+    }
+}
+
+#[test]
 fn a_flow_that_is_none() {
     let flow = NavierStokes {
         viscosity: 0.1,
         acceleration: [0.0; 3],
         wall_velocity: [[[0.0; 3]; 2]; 3],
+        bodies: Vec::new(),
         order: StaggeredOrder::Second,
         integrator: Integrator::Rk4,
         courant: 0.8,

@@ -5,6 +5,7 @@ use finegrain_fd::{
     Advection, Boundary, Compiled, Condition, Data, Face, Fd, Gas, GasEnd, GasState, Heat, Mesh,
     NavierStokes, Order, Side, StaggeredOrder, Wave,
 };
+use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::{HandOut, Integrator, Schedule, Settings, Simulation};
 
 /// Conditions that vary along every end of a brick of which two directions are closed.
@@ -65,6 +66,7 @@ fn flow<T: Compiled>(order: StaggeredOrder, integrator: Integrator) -> Fd<T> {
         viscosity: 0.01,
         acceleration,
         wall_velocity,
+        bodies: Vec::new(),
         order,
         integrator,
         courant: 0.9,
@@ -76,6 +78,28 @@ fn flow<T: Compiled>(order: StaggeredOrder, integrator: Integrator) -> Fd<T> {
     let mesh =
         Mesh::new([Side::periodic(37, 0.0, 1.0), closed(22, 0.0, 0.7), closed(19, 0.0, 0.5)]);
     flow.model(&mesh, &|x| [start(x), start([x[1], x[2], x[0]]), x[0].sin()]).unwrap()
+}
+
+/// Flow past a cylinder between walls.
+fn flow_past_a_body<T: Compiled>() -> Fd<T> {
+    let shape = Shape::Cylinder { axis: Axis::Z, centre: [0.95, 0.36, 0.0], radius: 0.13 };
+    let flow = NavierStokes {
+        viscosity: 0.01,
+        acceleration: [0.1, 0.0, 0.0],
+        wall_velocity: [[[0.0; 3]; 2]; 3],
+        bodies: vec![shape.into()],
+        order: StaggeredOrder::Second,
+        integrator: Integrator::Rk4,
+        courant: 0.9,
+    };
+    let mesh = Mesh::new([Side::periodic(45, 0.0, 1.0), Side::cells(36, 0.0, 0.8)]);
+    flow.model(&mesh, &|x| [start(x), start([x[1], x[0], 0.0]), 0.0]).unwrap()
+}
+
+#[test]
+fn of_flow_past_a_body() {
+    same_bits(flow_past_a_body::<f64>);
+    same_bits(flow_past_a_body::<f32>);
 }
 
 fn same_bits<T: Compiled>(model: impl Fn() -> Fd<T>) {

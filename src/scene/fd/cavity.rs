@@ -42,7 +42,7 @@ impl incompressible::Scene for Cavity {
         1.0
     }
 
-    fn stop(&self, run: Run<Grid>) -> Run<Grid> {
+    fn observe<T: Compiled>(&self, run: Run<Grid>, _: &Parts<T>) -> Run<Grid> {
         let scene = *self;
         run.stop_when(Every::Time(1.0), move |_, histories| scene.is_steady(histories, 2e-5))
     }

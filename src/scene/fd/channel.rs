@@ -9,7 +9,7 @@ use super::FdScene;
 use super::incompressible::{self, Incompressible};
 use crate::scene::channel::{self, Channel, Drive, GAP, TIME, VISCOSITY};
 use crate::scene::parameter::{Parameter, Parameters};
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 /// Length of the periodic strip, in spacings: the flow does not vary along it.
 const LENGTH: usize = 8;
@@ -19,33 +19,8 @@ pub fn parameters() -> Vec<Parameter> {
     [&channel::PARAMETERS[..], &[super::INTEGRATOR, super::COURANT]].concat()
 }
 
-/// Prepares Couette flow.
-pub fn prepare_couette(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    prepare(Drive::Couette, parameters, precision)
-}
-
-/// Prepares Poiseuille flow.
-pub fn prepare_poiseuille(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    prepare(Drive::Poiseuille, parameters, precision)
-}
-
-fn prepare(
-    drive: Drive,
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(drive, parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(drive, parameters, precision)?),
-        Precision::Mixed => return Err(super::refused(precision)),
-    })
-}
+prepare_with!(prepare_couette: build, Drive::Couette);
+prepare_with!(prepare_poiseuille: build, Drive::Poiseuille);
 
 fn build<T: Compiled>(
     drive: Drive,

@@ -2,6 +2,7 @@
 
 use finegrain_fd::{Compiled, NavierStokes, Parts, Spread, StaggeredOrder, measure};
 use finegrain_framework::run::{Dump, Every, Run, Summary};
+use finegrain_framework::shape::Shape;
 use finegrain_framework::space::Grid;
 use finegrain_framework::{Rate, Simulation, Whole};
 
@@ -25,6 +26,7 @@ pub fn equation(parameters: &Parameters, viscosity: f64, order: StaggeredOrder) 
         viscosity,
         acceleration: [0.0; 3],
         wall_velocity: [[[0.0; 3]; 2]; 3],
+        bodies: Vec::new(),
         order,
         integrator: super::integrator(parameters),
         courant: parameters.number("courant"),
@@ -47,8 +49,13 @@ pub trait Scene {
     /// Time between samples of the history, s.
     fn sampling(&self) -> f64;
 
-    /// Adds stop criteria; the first history has `kinetic_energy`.
-    fn stop(&self, run: Run<Grid>) -> Run<Grid> {
+    /// Bodies in the flow.
+    fn bodies(&self) -> Vec<Shape> {
+        Vec::new()
+    }
+
+    /// Adds histories after the first, which has `kinetic_energy`, and stop criteria.
+    fn observe<T: Compiled>(&self, run: Run<Grid>, _parts: &Parts<T>) -> Run<Grid> {
         run
     }
 
@@ -74,7 +81,7 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
     }
 
     fn observe(&self, run: Run<Grid>, parts: &Parts<T>) -> Run<Grid> {
-        let parts = parts.clone();
+        let all = parts.clone();
         let columns = [
             "kinetic_energy",
             "largest_speed",
@@ -84,11 +91,11 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
             "divergence",
         ];
         let run = run.monitor("flow", Every::Time(self.0.sampling()), columns, move |whole| {
-            let [x, y, z] = momentum(whole, &parts);
-            let [energy, speed] = energy_and_speed(whole, &parts);
-            [energy, speed, x, y, z, measure::largest(whole, divergence(&parts))]
+            let [x, y, z] = momentum(whole, &all);
+            let [energy, speed] = energy_and_speed(whole, &all);
+            [energy, speed, x, y, z, measure::largest(whole, divergence(&all))]
         });
-        self.0.stop(run)
+        self.0.observe(run, parts)
     }
 
     fn show(&self, dump: Dump, unknowns: &[String]) -> Dump {
@@ -96,7 +103,7 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
         dump.scalar(pressure).vector("velocity", velocity.into_iter().take(unknowns.len()))
     }
 
-    /// `divergence`: the largest, times the spacing over the largest speed; in a periodic box
+    /// `divergence`: the largest, times the spacing over the largest speed; in an empty periodic box
     /// `momentum_change`: the largest of its components' since the beginning, over the largest speed.
     fn judge(
         &self,
@@ -112,8 +119,10 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
         if speed > 0.0 {
             report.result("divergence", largest * spacing / speed, None);
         }
-        let is_periodic = parts.mesh.sides().iter().all(|side| side.spread == Spread::Periodic);
-        if is_periodic && speed > 0.0 {
+        let mut sides = parts.mesh.sides().iter();
+        let is_free =
+            self.0.bodies().is_empty() && sides.all(|side| side.spread == Spread::Periodic);
+        if is_free && speed > 0.0 {
             let names = ["momentum_x", "momentum_y", "momentum_z"];
             let before = names.map(|name| summary.histories[0].column(name)?.next());
             let pairs = momentum(&mut whole, parts).into_iter().zip(before);
@@ -123,12 +132,17 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
         self.0.judge(report, summary, simulation, parts);
     }
 
-    /// The speed, in space in a slice through the middle.
+    /// The speed around bodies, in space in a slice through the middle.
     fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
         let ([nx, ny, nz], [dx, dy, _]) = (parts.mesh.shape(), parts.mesh.spacing());
         let [x, y, _] = parts.mesh.position([0; 3]);
         let slice = velocities(simulation, parts).skip(nz / 2 * nx * ny).take(nx * ny);
-        Field::of_grid([nx, ny], [x, y], [dx, dy], slice.map(|(_, [u, v, w])| u.hypot(v).hypot(w)))
+        let bodies = self.0.bodies();
+        let speeds = slice.map(|(position, [u, v, w])| {
+            let is_in_body = bodies.iter().any(|body| body.contains(position));
+            if is_in_body { f64::NAN } else { u.hypot(v).hypot(w) }
+        });
+        Field::of_grid([nx, ny], [x, y], [dx, dy], speeds)
             .title(self.0.title())
             .quantity(Axis::new("speed").unit("m/s"))
             .into()
@@ -152,7 +166,7 @@ fn divergence<T: Compiled>(parts: &Parts<T>) -> Rate<T> {
 }
 
 /// Integrals of the velocity.
-fn momentum<T: Compiled>(whole: &mut Whole<'_, Grid>, parts: &Parts<T>) -> [f64; 3] {
+pub fn momentum<T: Compiled>(whole: &mut Whole<'_, Grid>, parts: &Parts<T>) -> [f64; 3] {
     let mut momentum = [0.0; 3];
     for (total, &u) in momentum.iter_mut().zip(&parts.unknowns) {
         *total = measure::totals(whole, parts, u).integral;

@@ -3,18 +3,22 @@
 //! Time steps are a fraction, `courant`, of the longest that is stable; more than that is an error.
 
 /// Defines `prepare`, which makes a scene ready by a function `build::<T>(parameters, precision)`, in
-/// the scalar type asked for.
+/// the scalar type asked for; `prepare_with!(NAME: build, FIRST)` a function of that name, by
+/// `build::<T>(FIRST, parameters, precision)`.
 macro_rules! prepare_with {
     ($build:ident) => {
+        prepare_with!(prepare: $build);
+    };
+    ($prepare:ident: $build:ident $(, $first:expr)?) => {
         /// Prepares the scene.
-        pub fn prepare(
+        pub fn $prepare(
             parameters: &$crate::scene::Parameters,
             precision: $crate::scene::Precision,
         ) -> Result<Box<dyn $crate::scene::Prepared>, $crate::scene::SceneError> {
             use $crate::scene::Precision;
             Ok(match precision {
-                Precision::F32 => Box::new($build::<f32>(parameters, precision)?),
-                Precision::F64 => Box::new($build::<f64>(parameters, precision)?),
+                Precision::F32 => Box::new($build::<f32>($($first,)? parameters, precision)?),
+                Precision::F64 => Box::new($build::<f64>($($first,)? parameters, precision)?),
                 Precision::Mixed => return Err($crate::scene::fd::refused(precision)),
             })
         }
@@ -25,6 +29,7 @@ pub mod advection;
 pub mod burgers;
 pub mod cavity;
 pub mod channel;
+pub mod cylinder;
 pub mod double_shear_layer;
 pub mod heat;
 pub mod sod;

@@ -12,7 +12,7 @@ use finegrain_lbm::{Body, Compiled, Fluid, LatticeKind, Mesh, Physics, Start, me
 use super::{Final, Flow, LbmScene};
 use crate::scene::channel::{self, Channel, DENSITY, Drive, GAP, SPEED, TIME, VISCOSITY};
 use crate::scene::parameter::{Parameter, Parameters};
-use crate::scene::{Precision, Prepared, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError};
 
 /// Length of the periodic strip, in spacings: the flow does not vary along it.
 const LENGTH: usize = 20;
@@ -23,33 +23,8 @@ pub fn parameters() -> Vec<Parameter> {
     [&channel::PARAMETERS[..], &super::collision_at_walls(), &own].concat()
 }
 
-/// Prepares Couette flow.
-pub fn prepare_couette(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    prepare(Drive::Couette, parameters, precision)
-}
-
-/// Prepares Poiseuille flow.
-pub fn prepare_poiseuille(
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    prepare(Drive::Poiseuille, parameters, precision)
-}
-
-fn prepare(
-    drive: Drive,
-    parameters: &Parameters,
-    precision: Precision,
-) -> Result<Box<dyn Prepared>, SceneError> {
-    Ok(match precision {
-        Precision::F32 => Box::new(build::<f32>(drive, parameters, precision)?),
-        Precision::F64 => Box::new(build::<f64>(drive, parameters, precision)?),
-        Precision::Mixed => return Err(super::refused(precision)),
-    })
-}
+prepare_with!(prepare_couette: build, Drive::Couette);
+prepare_with!(prepare_poiseuille: build, Drive::Poiseuille);
 
 fn build<T: Compiled>(
     drive: Drive,

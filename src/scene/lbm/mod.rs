@@ -4,18 +4,22 @@
 //! out; faster ones choose it by the Mach number. Either is among the results.
 
 /// Defines `prepare`, which makes a scene ready by a function `build::<T>(parameters, precision)`, in
-/// the scalar type asked for.
+/// the scalar type asked for; `prepare_with!(NAME: build, FIRST)` a function of that name, by
+/// `build::<T>(FIRST, parameters, precision)`.
 macro_rules! prepare_with {
     ($build:ident) => {
+        prepare_with!(prepare: $build);
+    };
+    ($prepare:ident: $build:ident $(, $first:expr)?) => {
         /// Prepares the scene.
-        pub fn prepare(
+        pub fn $prepare(
             parameters: &$crate::scene::Parameters,
             precision: $crate::scene::Precision,
         ) -> Result<Box<dyn $crate::scene::Prepared>, $crate::scene::SceneError> {
             use $crate::scene::Precision;
             Ok(match precision {
-                Precision::F32 => Box::new($build::<f32>(parameters, precision)?),
-                Precision::F64 => Box::new($build::<f64>(parameters, precision)?),
+                Precision::F32 => Box::new($build::<f32>($($first,)? parameters, precision)?),
+                Precision::F64 => Box::new($build::<f64>($($first,)? parameters, precision)?),
                 Precision::Mixed => return Err($crate::scene::lbm::refused(precision)),
             })
         }

@@ -6,11 +6,14 @@
 //! need integrators of its own, and the pressure of a stage would be one at no time in particular.
 
 mod around;
+mod body;
 mod equation;
 mod pace;
 mod patch;
 mod stages;
 mod stencil;
+
+use std::sync::Arc;
 
 use finegrain_framework::space::Grid;
 use finegrain_framework::{Columns, Evolution, Integrator, Model, Rate, Real, State, Step};
@@ -19,9 +22,12 @@ use crate::error::{FdError, positive};
 use crate::mesh::{AXES, Mesh, Spread};
 use crate::model::{Compiled, Fd, Parts};
 use crate::operator::staggered::StaggeredOrder;
+use body::Faces;
 use pace::{FlowPace, Limit};
 use patch::{Beyond, Ghost};
 
+pub use body::Body;
+pub(crate) use body::Immersed;
 pub(crate) use stages::{Fields, Stages};
 
 /// Incompressible flow in 2 or 3 directions, and how it is solved: on a staggered grid of cells, each side of the mesh
@@ -34,6 +40,8 @@ pub struct NavierStokes {
     pub acceleration: [f64; 3],
     /// Velocities of the walls at the lower and upper ends of each axis, m/s; along the walls.
     pub wall_velocity: [[[f64; 3]; 2]; 3],
+    /// Bodies in the flow; in 2 directions, with operators of second order.
+    pub bodies: Vec<Body>,
     /// Order of the operators; the fourth in periodic boxes only.
     pub order: StaggeredOrder,
     /// How time is stepped.
@@ -70,8 +78,8 @@ impl NavierStokes {
     ///
     /// # Errors
     /// If a number is outside its valid range, the mesh is not of 2 or 3 directions or has too few points, points
-    /// lie on the ends, there are walls with operators of fourth order, a wall moves into or out of the fluid, or
-    /// the scheme is stable with no time step.
+    /// lie on the ends, there are walls or bodies with operators of fourth order, a wall moves into or out of the
+    /// fluid, a body does not fit the mesh, or the scheme is stable with no time step.
     pub fn model<T: Compiled>(
         &self,
         mesh: &Mesh,
@@ -97,6 +105,7 @@ impl NavierStokes {
         for (a, &column) in velocity.iter().enumerate() {
             self.begin(mesh, a, start, columns.values_mut(column))?;
         }
+        let immersed = self.immersed(mesh, &velocity, &rates, pressure, &mut columns)?;
         let fields = Fields {
             equation: self.clone(),
             mesh: mesh.clone(),
@@ -105,8 +114,9 @@ impl NavierStokes {
             rates: rates.clone(),
             pressure,
             middle: middle.clone(),
+            immersed: immersed.clone(),
         };
-        let stages = T::navier_stokes(&fields);
+        let stages = T::navier_stokes(&fields)?;
         let pairs = velocity.iter().copied().zip(rates.iter().copied());
         let evolution = pairs.fold(Evolution::new(), |all, (u, rate)| all.with(u, rate));
         let mut plan = self.integrator.plan(&mut columns, &evolution, &stages.evaluation);
@@ -123,7 +133,29 @@ impl NavierStokes {
         let weights = [0, 1, 2].map(|a| vec![mesh.spacing()[a]; mesh.shape()[a]]);
         let derived = [pressure].into_iter().chain(middle).collect();
         let mesh = mesh.clone();
-        Ok(Fd { model, parts: Parts { mesh, unknowns: velocity, rates, derived, weights } })
+        Ok(Fd {
+            model,
+            parts: Parts { mesh, unknowns: velocity, rates, derived, weights, immersed },
+        })
+    }
+
+    /// The bodies on the mesh, if there are any.
+    fn immersed<T: Compiled>(
+        &self,
+        mesh: &Mesh,
+        velocity: &[State<T>],
+        rates: &[Rate<T>],
+        pressure: Rate<T>,
+        columns: &mut Columns,
+    ) -> Result<Option<Immersed<T>>, FdError> {
+        if self.bodies.is_empty() {
+            return Ok(None);
+        }
+        let faces = Arc::new(Faces::new(mesh, &self.bodies)?);
+        let traction = ["traction_x", "traction_y"].map(|name| columns.rate(name)).to_vec();
+        let (velocity, rates) = (velocity.to_vec(), rates.to_vec());
+        let acceleration = self.acceleration;
+        Ok(Some(Immersed { faces, velocity, rates, pressure, traction, acceleration }))
     }
 
     /// Points that operators read to either side.
@@ -166,6 +198,14 @@ impl NavierStokes {
                         }
                     }
                 }
+            }
+        }
+        for (number, body) in self.bodies.iter().enumerate() {
+            body.check(number)?;
+            if mesh.dims() != 2 || self.order != StaggeredOrder::Second {
+                let cause =
+                    "bodies take a mesh of two directions and operators of order 2".to_owned();
+                return Err(FdError::Body { number, cause });
             }
         }
         if matches!(self.integrator, Integrator::Leapfrog | Integrator::SymplecticEuler) {

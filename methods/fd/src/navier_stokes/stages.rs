@@ -5,8 +5,10 @@ use finegrain_framework::{Fault, Moment, Own, Rate, Real, Stage, State, UpdateSt
 
 use super::NavierStokes;
 use super::around::Coefficients;
+use super::body::{Forces, Immersed, NoSlip, Still, When};
 use super::equation::{Divergence, InTheMiddle, Momentum, PressureGradient};
 use super::stencil::{Field, Source, Stencil};
+use crate::error::FdError;
 use crate::mesh::{Mesh, Side, Spread};
 use crate::model::Compiled;
 use crate::operator::staggered::{self, StaggeredOrder};
@@ -33,6 +35,7 @@ pub struct Fields<T: Real> {
     pub(super) rates: Vec<Rate<T>>,
     pub(super) pressure: Rate<T>,
     pub(super) middle: Vec<Rate<T>>,
+    pub(super) immersed: Option<Immersed<T>>,
 }
 
 impl<T: Compiled> Fields<T> {
@@ -41,7 +44,7 @@ impl<T: Compiled> Fields<T> {
     }
 
     /// In `D` directions with operators of order `2 K`.
-    pub(crate) fn stages<const D: usize, const K: usize>(&self) -> Stages {
+    pub(crate) fn stages<const D: usize, const K: usize>(&self) -> Result<Stages, FdError> {
         let coefficients = Coefficients::<T, D, K>::new(self.mesh.spacing());
         let equation = &self.equation;
         let faces = |source: fn(&Self, usize) -> Source<T>| -> [Field<T>; D] {
@@ -88,7 +91,6 @@ impl<T: Compiled> Fields<T> {
                 coefficients: coefficients.clone(),
             })
         };
-        let solve = Stage::whole(Poisson { solver: self.solver(), column: self.pressure });
         let correction = Correction { velocity: self.velocity.clone(), rates: self.rates.clone() };
         let middle = Stage::rate(Stencil {
             term: InTheMiddle,
@@ -98,20 +100,33 @@ impl<T: Compiled> Fields<T> {
             wall: vec![None; D + 1],
             coefficients: coefficients.clone(),
         });
-        Stages {
-            start: vec![
-                divergence(velocity),
-                solve.clone(),
-                gradient(false),
-                Stage::update(correction),
-            ],
-            looking: vec![momentum.clone(), divergence(of_rates), solve.clone(), middle],
-            evaluation: vec![momentum, divergence(of_next), solve, gradient(true)],
-        }
+        let correction = Stage::update(correction);
+        let Some(immersed) = &self.immersed else {
+            let solve = Stage::whole(Poisson { solver: self.solver(), column: self.pressure });
+            return Ok(Stages {
+                start: vec![divergence(velocity), solve.clone(), gradient(false), correction],
+                looking: vec![momentum.clone(), divergence(of_rates), solve.clone(), middle],
+                evaluation: vec![momentum, divergence(of_next), solve, gradient(true)],
+            });
+        };
+        let forces = Forces::new(&immersed.faces, self.solver())?;
+        let still = |when| Stage::whole(Still { immersed: immersed.clone(), when });
+        let solve = |when| {
+            let (immersed, solver, forces) = (immersed.clone(), self.solver(), forces.clone());
+            let divergence = vec![T::zero(); self.mesh.points()];
+            Stage::whole(NoSlip { immersed, solver, forces, divergence, when })
+        };
+        let [start, step, look] =
+            [When::Start, When::Step, When::Look].map(|when| (still(when), solve(when)));
+        Ok(Stages {
+            start: vec![start.0, divergence(velocity), start.1, gradient(true), correction],
+            looking: vec![momentum.clone(), look.0, divergence(of_rates), look.1, middle],
+            evaluation: vec![momentum, step.0, divergence(of_next), step.1, gradient(true)],
+        })
     }
 
     /// Of `divergence(gradient(p)) = q`.
-    fn solver(&self) -> Solver<T> {
+    fn solver<U: Compiled>(&self) -> Solver<U> {
         let weights: Vec<f64> = staggered::derivative(self.order).into_iter().map(value).collect();
         let spacing = self.mesh.spacing();
         let axis = |side: &Side| Axis::new(side.points, side.spread == Spread::Periodic);
