@@ -100,7 +100,7 @@ fn measure_in<T: Real, P: Real>(plan: &Plan) -> Result<Breakdown, SceneError> {
                 let sum = |a: Option<f64>, b: Option<f64>| Some(a? + b?);
                 ((sum(tests.0, candidates.0), sum(tests.1, candidates.1)), single)
             }
-            SweepPart::Gather => (counts(GATHER, neighbours), peak),
+            SweepPart::Gather => (counts(gather::<T>(), neighbours), peak),
             SweepPart::Kernel => (counts(kernel::<T>(), neighbours), peak),
             SweepPart::Terms => (counts(TERMS, neighbours), peak),
         };
@@ -140,14 +140,18 @@ const COLLECT: Count = Count { flops: 24.0, values: 49.0, positions: 6.0, others
 const TEST: Count = Count { flops: 34.0, values: 0.0, positions: 0.0, others: 24.0 };
 /// A particle near the box is tested against a particle.
 const CANDIDATE: Count = Count { flops: 16.0, values: 0.0, positions: 0.0, others: 24.0 };
-/// Records of 8 and 16 values are written to as many lanes, of which three become differences, and their
-/// squares a distance.
-const GATHER: Count = Count { flops: 16.0, values: 70.0, positions: 0.0, others: 8.0 };
 /// Continuity (9 operations) and strain rate (24); pressure gradient (7) and divergence of stress (27).
 const TERMS: Count = Count { flops: 67.0, values: 49.0, positions: 0.0, others: 0.0 };
 /// Drift, prediction and correction of position, velocity and density, equation of state, and twice the
 /// check that nothing has left its cell.
 const UPDATE: Count = Count { flops: 70.0, values: 31.0, positions: 18.0, others: 0.0 };
+
+/// Records of 8 and 16 values, of which a vector of the second holds all that is in use, are written to as many
+/// lanes; three of these become differences, and their squares a distance.
+fn gather<T: Real>() -> Count {
+    let in_use = if size_of::<T>() == 4 { 8.0 + 16.0 } else { 8.0 + 12.0 };
+    Count { flops: 16.0, values: 2.0 * in_use + 22.0, positions: 0.0, others: 12.0 }
+}
 
 /// The Gaussian by a polynomial of degree 12 or, in single precision, 6; and the gradient.
 fn kernel<T: Real>() -> Count {

@@ -33,7 +33,7 @@ pub struct StabilityArguments {
     #[arg(long, default_value = "")]
     case: String,
     /// Only cases of this method.
-    #[arg(long, value_parser = ["sph", "lbm"])]
+    #[arg(long, value_parser = ["sph", "lbm", "fd"])]
     method: Option<String>,
     /// Begin no run after so many minutes.
     #[arg(long, default_value_t = 60.0)]
