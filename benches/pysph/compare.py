@@ -40,9 +40,9 @@ def install():
     return True
 
 
-def run(command, **environment):
-    """Standard output of a command run in the root folder; empty if it fails."""
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env={**os.environ, **environment})
+def run(command, folder=ROOT, **environment):
+    """Standard output of a command run in a folder; empty if it fails."""
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env={**os.environ, **environment})
     if done.returncode != 0:
         print(f"{command[0]} failed and is left out: {done.stderr.strip()[-300:]}")
     return done.stdout if done.returncode == 0 else ""
@@ -61,7 +61,8 @@ for _ in range(int(ROUNDS)):
                 seconds = float(row["seconds_per_step_median"])
                 note(f"finegrain, {precision}", int(row["workers"]), int(row["particles"]), seconds)
     for workers in [1, CORES] if has_peer else []:
-        words = run(THEIRS, OMP_NUM_THREADS=str(workers)).split("\n")
+        # It writes logs where it runs.
+        words = run(THEIRS, PYTHON.parents[1], OMP_NUM_THREADS=str(workers)).split("\n")
         words = words[-2].split() if len(words) > 1 else []
         if words:
             note("PySPH, f64", workers, int(words[0]), statistics.median(map(float, words[1:])))
