@@ -1,7 +1,11 @@
 //! Bodies given as shapes: obstacles and walls that every method reads in its own way.
 
+mod body;
+
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+pub use body::Body;
 
 /// A solid body, described once for every method.
 ///
@@ -86,6 +90,9 @@ pub enum ShapeError {
     /// A direction is zero or not finite.
     #[error("direction must be finite and other than zero, not {0:?}")]
     Direction([f64; 3]),
+    /// A component of the velocity of a body's surface, m/s, is infinite or not a number.
+    #[error("surface_velocity is {0}; it must be finite")]
+    SurfaceVelocity(f64),
 }
 
 impl Shape {

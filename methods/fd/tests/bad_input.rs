@@ -175,7 +175,7 @@ fn bodies_that_do_not_fit() {
     assert!(text.contains("body 1") && text.contains("not -0.1"), "{text}");
     let (shape, _) = disc(0.5, 0.5, 0.2);
     let text = second(&[(shape, [0.0, f64::NAN, 0.0])]);
-    assert!(text.contains("surface_velocity is [0.0, NaN, 0.0]"), "{text}");
+    assert!(text.contains("surface_velocity is NaN"), "{text}");
     for y in [0.05, 0.95, 0.21] {
         let text = second(&[disc(0.5, y, 0.2)]);
         assert!(text.contains("body 0") && text.contains("end of y"), "{y}: {text}");

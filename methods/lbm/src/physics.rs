@@ -70,7 +70,7 @@ impl Physics {
             return Err(LbmError::Bodies(self.bodies.len()));
         }
         for (number, body) in self.bodies.iter().enumerate() {
-            body.check(number)?;
+            body.check().map_err(|cause| LbmError::Body { number, cause })?;
         }
         if self.openings.len() > 6 {
             return Err(LbmError::Openings(self.openings.len()));

@@ -1,41 +1,8 @@
 //! Bodies, and how the fluid feels them.
 
-use finegrain_framework::shape::Shape;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{SphError, finite};
-
-/// A body, filled with particles that do not move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
-    /// The space that it fills.
-    pub shape: Shape,
-    /// Velocity with which its surface slides along itself, m/s, as a lid or a belt does; the
-    /// particles stay where they are.
-    pub surface_velocity: [f64; 3],
-}
-
-impl From<Shape> for Body {
-    /// A body at rest.
-    fn from(shape: Shape) -> Self {
-        Self { shape, surface_velocity: [0.0; 3] }
-    }
-}
-
-impl Body {
-    pub(crate) fn check(&self, number: usize) -> Result<(), SphError> {
-        self.shape.check().map_err(|cause| SphError::Body { number, cause })?;
-        for component in self.surface_velocity {
-            finite("surface_velocity", component)?;
-        }
-        Ok(())
-    }
-
-    /// Whether its surface moves.
-    pub(crate) fn slides(&self) -> bool {
-        self.surface_velocity != [0.0; 3]
-    }
-}
+pub use finegrain_framework::shape::Body;
 
 /// Whether the fluid sticks to bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -64,7 +64,7 @@ impl Physics {
             fringe.check()?;
         }
         for (number, body) in self.bodies.iter().enumerate() {
-            body.check(number)?;
+            body.check().map_err(|cause| SphError::Body { number, cause })?;
         }
         Ok(())
     }

@@ -201,7 +201,7 @@ impl NavierStokes {
             }
         }
         for (number, body) in self.bodies.iter().enumerate() {
-            body.check(number)?;
+            body.check().map_err(|cause| FdError::Body { number, cause: cause.to_string() })?;
             if mesh.dims() != 2 || self.order != StaggeredOrder::Second {
                 let cause =
                     "bodies take a mesh of two directions and operators of order 2".to_owned();

@@ -11,7 +11,7 @@ use crate::error::FdError;
 use crate::poisson::Solver;
 
 /// The factored system. To the forces come, for each compartment of the bodies, a pressure in it: a force along its
-/// gradient does nothing, and is set to none; and the fluid that mirror images send into it, which is of second
+/// gradient does nothing, and is set to none; and the fluid that velocities at ghosts send into it, which is of second
 /// order and must come out again, is spread over its outline.
 #[derive(Clone)]
 pub(crate) struct Forces {
