@@ -10,6 +10,7 @@ use bytemuck::Pod;
 
 use crate::format::{Kind, Values};
 use crate::memory::{Line, Memory};
+use crate::notes::{Note, Notebook, Notes};
 
 /// Element type of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -156,6 +157,7 @@ impl Column {
 pub struct Columns {
     points: usize,
     columns: Vec<Column>,
+    notebook: Notebook,
 }
 
 impl Columns {
@@ -164,7 +166,7 @@ impl Columns {
 
     /// Columns over `points` points; none declared yet.
     pub fn new(points: usize) -> Self {
-        Self { points, columns: Vec::new() }
+        Self { points, columns: Vec::new(), notebook: Notebook::default() }
     }
 
     /// Number of points.
@@ -194,6 +196,22 @@ impl Columns {
     /// As [`Columns::state`].
     pub fn rate<T: Element>(&mut self, name: &str) -> Rate<T> {
         Rate(self.declare(name, Role::Rate, T::KIND, false), PhantomData)
+    }
+
+    /// Declares notes of every sub-domain for itself, empty at first: rate stages write them and later
+    /// rate stages of the same step read them ([`Rates::notes`](crate::Rates::notes)). They are never
+    /// saved, and a re-sort leaves them with other points: a stage that reads them relies on an earlier
+    /// one of its step, or the same scene does not give the same bits after a restart.
+    pub fn notes<T: Note>(&mut self) -> Notes<T> {
+        self.notebook.declare()
+    }
+
+    pub(crate) fn notebook(&self) -> &Notebook {
+        &self.notebook
+    }
+
+    pub(crate) fn notebook_mut(&mut self) -> &mut Notebook {
+        &mut self.notebook
     }
 
     /// Declares a column of the type of another one, named after it.

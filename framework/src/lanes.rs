@@ -92,6 +92,25 @@ impl Found {
         self.count.next_multiple_of(SUMS)
     }
 
+    /// Takes indices that were found before, among `points` points: as if found once more.
+    ///
+    /// # Panics
+    /// If there are none, or one is not below `points`.
+    #[inline(always)]
+    pub fn recall(&mut self, indices: &[u16], points: usize) {
+        let mut largest = 0;
+        for &index in indices {
+            largest = largest.max(index);
+        }
+        assert!(!indices.is_empty() && usize::from(largest) < points, "indices of other points");
+        self.prepare(points);
+        self.count = indices.len();
+        for (to, &index) in self.indices.iter_mut().zip(indices) {
+            *to = u32::from(index);
+        }
+        self.pad();
+    }
+
     /// Fills the last group up with the first point found.
     #[inline]
     fn pad(&mut self) {

@@ -182,6 +182,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             "the domain and the columns have different numbers of points"
         );
         desk.lay_out(step, columns);
+        columns.notebook_mut().resize(partition.len());
         Self {
             domain,
             partition,
@@ -239,6 +240,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             slots: &table.1,
             shifts,
             displaced: self.step.displaced,
+            notebook: self.columns.notebook(),
             activity: self.desk.activities.of(worker),
         }
     }

@@ -85,6 +85,7 @@ mod leg;
 mod memory;
 #[cfg(all(test, loom))]
 mod model_checks;
+mod notes;
 pub mod pack;
 pub mod port;
 mod real;
@@ -109,6 +110,7 @@ pub use columns::*;
 pub use domain::*;
 pub use integrator::{Evolution, Integrator, Plan};
 pub use leg::{Cause, Failure};
+pub use notes::{Note, Notes};
 pub use real::Real;
 pub use schedule::{HandOut, Schedule};
 pub use simulation::{Model, Position, RestoreError, RunError, Settings, Simulation};

@@ -4,6 +4,7 @@
 use crate::activity::UNWATCHED;
 use crate::columns::{ColumnSet, Columns};
 use crate::domain::Domain;
+use crate::notes::Notebook;
 use crate::stage::Fault;
 use crate::team::Team;
 use crate::view::{Near, Place, Shifts, Slot, slots_of};
@@ -57,8 +58,9 @@ impl<D: Domain> Whole<'_, D> {
         let (domain, slots) = (&*self.domain, &**slots);
         self.team.for_each_chunk(values, N, |id, values| {
             let (shifts, displaced) = (Shifts::NONE, ColumnSet::default());
-            let activity = &UNWATCHED;
-            let place = Place { domain, partition, id, slots, shifts, displaced, activity };
+            let (notebook, activity) = (Notebook::EMPTY, &UNWATCHED);
+            let place =
+                Place { domain, partition, id, slots, shifts, displaced, notebook, activity };
             // SAFETY: the partition is sealed and has as many points as the columns, which are
             // borrowed exclusively here; nobody writes any of them during the reduction.
             let near = unsafe { Near::new(place, ColumnSet::default()) };

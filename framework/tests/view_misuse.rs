@@ -39,6 +39,8 @@ impl Domain for Row {
 
 #[derive(Clone, Copy)]
 struct Fields {
+    notes: Notes<Vec<u64>>,
+    foreign_notes: Notes<Vec<u8>>,
     state: State<f64>,
     other: State<f32>,
     rate: Rate<f64>,
@@ -48,6 +50,8 @@ struct Fields {
 fn run(make: impl FnOnce(Fields) -> Stage<Row>) -> Result<(), RunError> {
     let mut columns = Columns::new(15);
     let fields = Fields {
+        notes: columns.notes(),
+        foreign_notes: Columns::new(1).notes(),
         state: columns.state("state"),
         other: columns.state("other"),
         rate: columns.rate("rate"),
@@ -275,4 +279,22 @@ fn swapping_columns_of_other_types() {
         Simulation::new(model, Settings::default()).map(|mut s| s.advance(1))
     }));
     assert!(outcome.is_err());
+}
+
+#[test]
+fn notes_borrowed_twice_or_of_other_columns() {
+    in_rate(|f, _, rates| {
+        rates.notes(f.notes).push(1);
+        assert_eq!(*rates.notes(f.notes), [1]);
+    })
+    .unwrap();
+    let outcome = in_rate(|f, _, rates| {
+        let (mut first, mut second) = (rates.notes(f.notes), rates.notes(f.notes));
+        first.append(&mut second);
+    });
+    assert_refused(outcome, "the notes of sub-domain 2 are already borrowed");
+    let outcome = in_rate(|f, _, rates| {
+        rates.notes(f.foreign_notes).push(1);
+    });
+    assert_refused(outcome, "notes belong to other columns");
 }

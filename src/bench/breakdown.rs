@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use finegrain_framework::run::RunFailed;
 use finegrain_framework::{Real, RunError, Settings, Simulation};
-use finegrain_sph::{SweepPart, Viscosity, measure};
+use finegrain_sph::{Pairs, SweepPart, Viscosity, measure};
 
 use super::cylinder::{Plan, model};
 use super::overheads;
@@ -56,7 +56,7 @@ pub fn measure(plan: &Plan) -> Result<Breakdown, SceneError> {
 }
 
 fn measure_in<T: Real, P: Real>(plan: &Plan) -> Result<Breakdown, SceneError> {
-    let sph = model::<T, P>(plan.widths[0], plan.viscosity)?;
+    let sph = model::<T, P>(plan.widths[0], plan)?;
     let settings =
         Settings { schedule: plan.schedule, workers: 1, trace: TRACE, ..Settings::default() };
     let mut simulation = Simulation::new(sph.model, settings)
@@ -95,10 +95,16 @@ fn measure_in<T: Real, P: Real>(plan: &Plan) -> Result<Breakdown, SceneError> {
         let ((flops, bytes), peak) = match part {
             SweepPart::Collect => (counts(COLLECT, effort.seen), peak),
             SweepPart::Search => {
-                let [tests, candidates] = [(TEST, effort.tested), (CANDIDATE, effort.candidates)]
-                    .map(|(count, times)| counts(count, times));
-                let sum = |a: Option<f64>, b: Option<f64>| Some(a? + b?);
-                ((sum(tests.0, candidates.0), sum(tests.1, candidates.1)), single)
+                let (searches, listed) = match plan.pairs {
+                    Pairs::Kept => (1.0, neighbours),
+                    Pairs::Searched => (2.0, 0.0),
+                };
+                let (tests, candidates) = (searches * effort.tested, searches * effort.candidates);
+                let parts = [(TEST, tests), (CANDIDATE, candidates), (LISTED, listed)];
+                let [tests, candidates, lists] = parts.map(|(count, times)| counts(count, times));
+                let sum = |[a, b, c]: [Option<f64>; 3]| Some(a? + b? + c?);
+                let flops = sum([tests.0, candidates.0, lists.0]);
+                ((flops, sum([tests.1, candidates.1, lists.1])), single)
             }
             SweepPart::Gather => (counts(gather::<T>(), neighbours), peak),
             SweepPart::Kernel => (counts(kernel::<T>(), neighbours), peak),
@@ -136,10 +142,12 @@ impl Count {
 /// A particle that a sub-domain sees: its position is shifted, put in place and scaled; 5 quantities in the
 /// first sweep and 8 in the second are put with it into records of 8 and 16 values.
 const COLLECT: Count = Count { flops: 24.0, values: 49.0, positions: 6.0, others: 24.0 };
-/// A particle is tested against the box of a cell's particles.
-const TEST: Count = Count { flops: 34.0, values: 0.0, positions: 0.0, others: 24.0 };
-/// A particle near the box is tested against a particle.
-const CANDIDATE: Count = Count { flops: 16.0, values: 0.0, positions: 0.0, others: 24.0 };
+/// A particle is tested against the box of a cell's particles, once.
+const TEST: Count = Count { flops: 17.0, values: 0.0, positions: 0.0, others: 12.0 };
+/// A particle near the box is tested against a particle, once.
+const CANDIDATE: Count = Count { flops: 8.0, values: 0.0, positions: 0.0, others: 12.0 };
+/// The place of a neighbour is put on a list, which is copied, and looked up there.
+const LISTED: Count = Count { flops: 0.0, values: 0.0, positions: 0.0, others: 20.0 };
 /// Continuity (9 operations) and strain rate (24); pressure gradient (7) and divergence of stress (27).
 const TERMS: Count = Count { flops: 67.0, values: 49.0, positions: 0.0, others: 0.0 };
 /// Drift, prediction and correction of position, velocity and density, equation of state, and twice the

@@ -13,8 +13,11 @@ use std::thread;
 use finegrain_framework::run::{Dump, Every, Run, RunFailed, Until};
 use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::Cells;
+use finegrain_framework::trace::Trace;
 use finegrain_framework::{Real, Schedule, Settings, Simulation};
-use finegrain_sph::{Fluid, Packing, Physics, Scheme, Sph, StateEquation, Viscosity, measure};
+use finegrain_sph::{
+    Fluid, Packing, Pairs, Physics, Scheme, Sph, StateEquation, Viscosity, measure,
+};
 
 use super::memory;
 use super::row::Row;
@@ -47,15 +50,14 @@ pub struct Plan {
     pub precision: Precision,
     /// Form of the viscous term; the paper's is the strain-rate form.
     pub viscosity: Viscosity,
+    /// Whether sweeps share their lists of neighbours.
+    pub pairs: Pairs,
     /// Folder for results.
     pub out: PathBuf,
 }
 
 /// Builds the paper's model for a width.
-pub(super) fn model<T: Real, P: Real>(
-    width: f64,
-    viscosity: Viscosity,
-) -> Result<Sph<T, P>, SceneError> {
+pub(super) fn model<T: Real, P: Real>(width: f64, plan: &Plan) -> Result<Sph<T, P>, SceneError> {
     let lattice = Packing::HexagonalClosePacked.fit([SIDE, SIDE, width], SPACING)?;
     let lengths = lattice.lengths();
     let body = Shape::Cylinder {
@@ -72,12 +74,13 @@ pub(super) fn model<T: Real, P: Real>(
         state_equation: StateEquation::Linear { background: 0.0 },
     };
     let physics = Physics {
-        viscosity: Some(viscosity),
+        viscosity: Some(plan.viscosity),
         body_acceleration: [1e-5, 0.0, 0.0],
         bodies: vec![body.into()],
         ..Physics::default()
     };
-    Ok(Sph::new(&start(3, &lattice, SPACING), &fluid, &physics, &Scheme::default())?)
+    let scheme = Scheme { pairs: plan.pairs, ..Scheme::default() };
+    Ok(Sph::new(&start(3, &lattice, SPACING), &fluid, &physics, &scheme)?)
 }
 
 /// Measures everything in `plan`; `say` hears of every sample.
@@ -111,8 +114,10 @@ fn measure_in<T: Real, P: Real>(
             let seconds = sample::<T, P>(plan, width)?;
             for (row, &own) in group.iter_mut().zip(&seconds) {
                 row.seconds_per_step.push(own.together);
+                row.in_stages.push(own.in_stages);
                 if plan.workers[0] == 1 && row.workers > 1 {
                     row.alone.push(seconds[0].together);
+                    row.alone_in_stages.push(seconds[0].in_stages);
                     row.apart.push(own.apart);
                 }
                 say(row);
@@ -128,7 +133,7 @@ fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, Sce
     let mut rows = Vec::new();
     for &workers in &plan.workers {
         memory::reset_peak();
-        let mut run = start_run::<T, P>(plan, width, workers)?;
+        let mut run = start_run::<T, P>(plan, width, workers, false)?;
         run.run()?;
         // Before anything else is allocated.
         let peak_memory = memory::peak();
@@ -143,7 +148,9 @@ fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, Sce
                 Viscosity::Morris | Viscosity::Adami | Viscosity::Monaghan => 1,
             },
             seconds_per_step: Vec::new(),
+            in_stages: Vec::new(),
             alone: Vec::new(),
+            alone_in_stages: Vec::new(),
             apart: Vec::new(),
             peak_memory,
         });
@@ -157,6 +164,8 @@ fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, Sce
 struct Sample {
     /// Of one run with all workers.
     together: f64,
+    /// Of the same, what all its workers together spent in stages.
+    in_stages: f64,
     /// Of separate runs with one worker each; 0 with one worker.
     apart: f64,
 }
@@ -179,10 +188,10 @@ fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Sample>, Scen
     let mut runs = Vec::new();
     for &workers in &plan.workers {
         let mut own =
-            Runs { together: start_run::<T, P>(plan, width, workers)?, apart: Vec::new() };
+            Runs { together: start_run::<T, P>(plan, width, workers, true)?, apart: Vec::new() };
         if plan.workers[0] == 1 && workers > 1 {
             for part in 0..workers {
-                let run = start_run::<T, P>(plan, width, 1)?;
+                let run = start_run::<T, P>(plan, width, 1, false)?;
                 own.apart.push(run.out(plan.out.join(format!("apart/{part}"))));
             }
         }
@@ -193,11 +202,15 @@ fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Sample>, Scen
     let mut samples = vec![Sample::default(); runs.len()];
     let mut done = 0;
     while done < plan.steps {
+        let begun = done;
         done = (done + TURN).min(plan.steps);
         let until = steps(WARM_UP + done);
         runs = runs.into_iter().map(|own| own.until(until)).collect();
         for (own, sample) in runs.iter_mut().zip(&mut samples) {
             sample.together += own.together.run()?.wall_clock.as_secs_f64() / plan.steps as f64;
+            if let Some(trace) = own.together.simulation().trace() {
+                sample.in_stages += in_stages(trace, WARM_UP + begun) / plan.steps as f64;
+            }
             sample.apart += side_by_side(&mut own.apart)? / plan.steps as f64;
         }
     }
@@ -219,6 +232,13 @@ fn side_by_side<P: Real>(runs: &mut [Run<Cells<P>>]) -> Result<f64, SceneError> 
     Ok(seconds)
 }
 
+/// Seconds that all workers together spent in stages from step `first` on.
+fn in_stages(trace: &Trace, first: u64) -> f64 {
+    let events = (0..trace.workers()).flat_map(|worker| trace.events(worker));
+    let own = events.filter(|event| event.step >= first);
+    own.map(|event| 1e-9 * (event.end - event.begin) as f64).sum()
+}
+
 fn steps(steps: u64) -> Until {
     Until { steps: Some(steps), ..Until::default() }
 }
@@ -228,14 +248,17 @@ pub fn dump_folder(plan: &Plan, workers: usize) -> PathBuf {
     plan.out.join(format!("workers-{workers}"))
 }
 
-/// A run that is ready for its first step, and to end when it is warm.
+/// A run that is ready for its first step, and to end when it is warm; `traced`, it remembers as many
+/// parts as there are particles, which is more than a turn's: a sub-domain has 256 particles.
 fn start_run<T: Real, P: Real>(
     plan: &Plan,
     width: f64,
     workers: usize,
+    traced: bool,
 ) -> Result<Run<Cells<P>>, SceneError> {
-    let sph = model::<T, P>(width, plan.viscosity)?;
-    let settings = Settings { schedule: plan.schedule, workers, ..Settings::default() };
+    let sph = model::<T, P>(width, plan)?;
+    let trace = if traced { sph.model.columns.points() } else { 0 };
+    let settings = Settings { schedule: plan.schedule, workers, trace, ..Settings::default() };
     let mut simulation = Simulation::new(sph.model, settings)
         .map_err(|cause| SceneError::Workers { workers, cause })?;
     simulation.begin().map_err(|cause| RunFailed { cause: cause.into(), last_checkpoint: None })?;

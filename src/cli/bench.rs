@@ -10,7 +10,7 @@ use finegrain::bench::figures;
 use finegrain::bench::row::{self, Row};
 use finegrain::framework::Schedule;
 use finegrain::scene::Precision;
-use finegrain::sph::Viscosity;
+use finegrain::sph::{Pairs, Viscosity};
 
 use super::CommandError;
 
@@ -31,6 +31,7 @@ impl Default for BenchCommand {
             schedule: Schedule::default(),
             precision: Precision::default(),
             viscous_form: ViscousForm::default(),
+            pairs: KeptPairs::default(),
             out: PathBuf::from("out/bench-cylinder"),
         })
     }
@@ -44,6 +45,16 @@ pub enum ViscousForm {
     StrainRate,
     /// Morris et al. (1997): one sweep a step.
     Morris,
+}
+
+/// Whether sweeps share their lists of neighbours.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum KeptPairs {
+    /// Every sweep searches.
+    #[default]
+    Searched,
+    /// The second looks up what the first has found, at two bytes a pair.
+    Kept,
 }
 
 /// Arguments of `finegrain bench cylinder`.
@@ -71,6 +82,9 @@ pub struct CylinderArguments {
     /// Form of the viscous term.
     #[arg(long, default_value = "strain-rate")]
     viscous_form: ViscousForm,
+    /// Lists of neighbours.
+    #[arg(long, default_value = "searched")]
+    pairs: KeptPairs,
     /// Folder for pictures, numbers and results dumps.
     #[arg(long, default_value = "out/bench-cylinder")]
     out: PathBuf,
@@ -103,6 +117,10 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
         viscosity: match arguments.viscous_form {
             ViscousForm::StrainRate => Viscosity::StrainRate,
             ViscousForm::Morris => Viscosity::Morris,
+        },
+        pairs: match arguments.pairs {
+            KeptPairs::Kept => Pairs::Kept,
+            KeptPairs::Searched => Pairs::Searched,
         },
         out: arguments.out,
     };
@@ -145,7 +163,7 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
 fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     writeln!(
         out,
-        "\n{:>7} {:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>7} {:>13} {:>9}",
+        "\n{:>7} {:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>7} {:>8} {:>7} {:>13} {:>9}",
         "width/m",
         "particles",
         "workers",
@@ -153,6 +171,8 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
         "s/step (min)",
         "speed-up",
         "efficiency",
+        "stages",
+        "schedule",
         "machine",
         "Minteractions",
         "B/particle"
@@ -163,7 +183,7 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     for row in rows {
         writeln!(
             out,
-            "{:>7} {:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>7} {:>13.1} {:>9}",
+            "{:>7} {:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>7} {:>8} {:>7} {:>13.1} {:>9}",
             row.width,
             row.particles,
             row.workers,
@@ -171,6 +191,8 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
             row.best(),
             optional(row.speed_up(), 3),
             optional(row.efficiency(), 3),
+            optional(row.stage_efficiency(), 3),
+            optional(row.schedule_efficiency(), 3),
             optional(row.machine_efficiency(), 3),
             row.interactions_per_second() / 1e6,
             optional(row.bytes_per_particle(), 0),
@@ -179,7 +201,9 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     if let Some(row) = rows.first() {
         writeln!(
             out,
-            "machine: efficiency of as many separate runs of one worker each, all at the same time\n\
+            "efficiency = stages x schedule: what the same stages take with one worker over what they take with\n\
+             all, and the share of the time that workers spend in them, likewise\n\
+             machine: efficiency of as many separate runs of one worker each, all at the same time\n\
              Minteractions: million pair interactions a second and core in whole steps (median), {:.1}\n\
              neighbours a particle visited in {} sweep(s) a step; every visit counts",
             row.neighbours, row.sweeps

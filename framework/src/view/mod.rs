@@ -36,6 +36,7 @@ pub(crate) use shifts::Shifts;
 use crate::activity::Activity;
 use crate::columns::{ColumnId, ColumnSet, Columns, Element, ElementKind};
 use crate::domain::{Partition, Span};
+use crate::notes::Notebook;
 
 /// Address and element type of one column's memory.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +66,8 @@ pub(crate) struct Place<'a, D> {
     pub shifts: &'a Shifts,
     /// What has an offset somewhere in the step.
     pub displaced: ColumnSet,
+    /// What sub-domains note for themselves.
+    pub notebook: &'a Notebook,
     /// What the worker that works on it is doing.
     pub activity: &'a Activity,
 }

@@ -1,9 +1,12 @@
 //! What a stage writes: own rates in a rate stage, own state in an update stage. The argument for
 //! its `unsafe` is the [parent's](super).
 
+use std::ops::DerefMut;
+
 use super::{Part, PartMut, Place};
 use crate::columns::{ColumnId, ColumnSet, Element, ElementKind, Handle, Rate, State};
 use crate::domain::{Domain, Span};
+use crate::notes::{Note, Notes};
 use crate::pack::Bypass;
 
 /// Which columns of one sub-domain have been borrowed, and how.
@@ -69,6 +72,14 @@ impl<'a, D: Domain> Rates<'a, D> {
         // SAFETY: the spans are the sub-domain's own; `Rates::new` promises that nobody else touches
         // the column there, and `claim` that it is had only once.
         unsafe { PartMut::new(self.place.base(column.id()), spans) }
+    }
+
+    /// What the sub-domain has noted for itself, and may note for later stages of this step.
+    ///
+    /// # Panics
+    /// If the handle belongs to other columns, or the notes are already borrowed.
+    pub fn notes<T: Note>(&mut self, notes: Notes<T>) -> impl DerefMut<Target = T> + use<'a, T, D> {
+        self.place.notebook.page(notes, self.place.id)
     }
 
     /// The divided space.

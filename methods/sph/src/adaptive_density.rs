@@ -181,7 +181,7 @@ impl<T: Real, const D: usize> Solver<T, D> {
                 // A little further, for the iterations to come.
                 reach = (T::of(1.1) * h).min(longest);
                 let radius = self.kernel.support() * reach;
-                neighbours.find(surroundings, particle, radius, activity);
+                neighbours.find(surroundings, particle, radius, None, activity);
                 SweepPart::Kernel.begin(activity);
                 ones.resize(neighbours.distance_squared().len().max(ones.len()), T::one());
             }

@@ -83,7 +83,7 @@ impl<T: Real, P: Real> Piece<T, P> {
     }
 
     /// Whether it is a sum for the fluid.
-    fn acts_on_fluid(&self) -> bool {
+    pub fn acts_on_fluid(&self) -> bool {
         matches!(self, Self::Term(term) if !term.acts_on_bodies())
     }
 

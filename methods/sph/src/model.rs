@@ -20,6 +20,7 @@ use crate::kernel::Kernel;
 use crate::kernel::adaptive::{AdaptiveKernel, Kernels};
 use crate::liquid;
 use crate::pacing::{Sort, TimeStepControl};
+use crate::pairs::{Keeping, Pairs};
 use crate::physics::{Fluid, Physics, Viscosity};
 use crate::quantity::Quantity;
 use crate::scheme::{Density, Gradient, PressureForm, Scheme};
@@ -223,7 +224,16 @@ fn build<T: Real, P: Real, const D: usize>(
     };
     let imposed = Imposed::new(physics);
     let mut evaluation = Vec::new();
-    for slot in slots(pieces, D) {
+    let slots = slots(pieces, D);
+    let sums_over_fluid = |slot: &[Piece<T, P>]| slot.iter().any(Piece::acts_on_fluid);
+    let sweeps_of_fluid = slots.iter().filter(|slot| sums_over_fluid(slot)).count();
+    let has_one_range = matches!(kernels, Kernels::Uniform(_));
+    let mut keeping = Keeping::Nothing;
+    if scheme.pairs == Pairs::Kept && has_one_range && sweeps_of_fluid > 1 {
+        keeping = Keeping::Writes(columns.notes());
+    }
+    for slot in slots {
+        let own_keeping = if sums_over_fluid(&slot) { keeping } else { Keeping::Nothing };
         let mut terms = Vec::new();
         for piece in slot {
             match piece {
@@ -233,14 +243,13 @@ fn build<T: Real, P: Real, const D: usize>(
             }
         }
         if !terms.is_empty() {
-            evaluation.push(Stage::rate(Sweep::<T, P, D>::new(
-                kernels,
-                terms,
-                &fields,
-                &imposed,
-                scheme.wall_pressure == WallPressure::Evolved,
-                &friction,
-            )));
+            let bodies_evolve = scheme.wall_pressure == WallPressure::Evolved;
+            let sweep =
+                Sweep::<T, P, D>::new(kernels, terms, &fields, &imposed, bodies_evolve, &friction);
+            evaluation.push(Stage::rate(sweep.keeping(own_keeping)));
+        }
+        if !matches!(own_keeping, Keeping::Nothing) {
+            keeping = keeping.next();
         }
     }
 

@@ -125,7 +125,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
 
     /// Gathers the particles near the cell at hand that interact with `particle`, with the kernel's
     /// values for them. `longest` is the longest smoothing length of any of them, where they have
-    /// their own.
+    /// their own. They are searched for unless their places are `known`.
     #[inline(always)]
     pub fn gather(
         &mut self,
@@ -133,6 +133,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         particle: &Particle<T, D>,
         kernels: &Kernels<T, D>,
         longest: T,
+        known: Option<&[u16]>,
         activity: &Activity,
     ) {
         // One place where the kernel is evaluated: it is compiled for every smoothing function.
@@ -143,7 +144,7 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
                 (kernel.at(own), kernel.support() * own.max(longest))
             }
         };
-        self.find(surroundings, particle, radius, activity);
+        self.find(surroundings, particle, radius, known, activity);
         SweepPart::Kernel.begin(activity);
         self.evaluate(&kernel);
         if let Kernels::Adaptive(kernel) = kernels {
@@ -157,17 +158,21 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
     }
 
     /// Gathers the particles near the cell at hand that are nearer to `particle` than `radius`, m, and
-    /// perhaps some that are little further away.
+    /// perhaps some that are little further away; or those at the places that are `known`.
     #[inline(always)]
     pub fn find(
         &mut self,
         surroundings: &Surroundings<T, D>,
         particle: &Particle<T, D>,
         radius: T,
+        known: Option<&[u16]>,
         activity: &Activity,
     ) {
         SweepPart::Search.begin(activity);
-        surroundings.find(particle, radius * Kernel::<T>::cut(), &mut self.found);
+        match known {
+            Some(places) => self.found.recall(places, surroundings.len()),
+            None => surroundings.find(particle, radius * Kernel::<T>::cut(), &mut self.found),
+        }
         SweepPart::Gather.begin(activity);
         let padded = self.found.padded();
         self.padded = padded;
@@ -237,6 +242,12 @@ impl<T: Real, const D: usize> Neighbours<T, D> {
         for lanes in all {
             lanes.resize(length);
         }
+    }
+
+    /// Their places among all that the sub-domain sees.
+    #[inline(always)]
+    pub fn found(&self) -> &[u32] {
+        self.found.indices()
     }
 
     /// `x_i - x_j` along direction `a`.

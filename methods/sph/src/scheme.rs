@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::{WallPressure, WallVelocity};
 use crate::error::{SphError, not_negative, positive};
 use crate::kernel::SmoothingFunction;
+use crate::pairs::Pairs;
 use crate::smoothing::Smoothing;
 use crate::stabilisation::Stabilisation;
 
@@ -24,6 +25,8 @@ pub struct Scheme {
     pub courant_number: f64,
     /// How much further than the support cells see, in particle spacings.
     pub skin: f64,
+    /// Whether sweeps share their lists of neighbours.
+    pub pairs: Pairs,
     /// Where density comes from.
     pub density: Density,
     /// Pressure evolves by itself, with diffusion; by the equation of state if `None`.
@@ -58,6 +61,7 @@ impl Default for Scheme {
             integrator: Integrator::Leapfrog,
             courant_number: 1.0,
             skin: 0.2,
+            pairs: Pairs::Searched,
             density: Density::Continuity,
             edac: None,
             pressure_form: PressureForm::Symmetric,

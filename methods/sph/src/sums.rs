@@ -7,6 +7,7 @@ use crate::gathered::Layout;
 use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
 use crate::neighbourhood::{Neighbours, Particle};
+use crate::pairs::{List, Listed};
 use crate::quantity::{Quantity, Values};
 use crate::surroundings::Surroundings;
 use crate::sweep_part::SweepPart;
@@ -44,10 +45,11 @@ impl<T: Real, const D: usize> Sums<T, D> {
         &self,
         written: &mut Written<'_, T>,
         scratch: &mut Scratch<T, D>,
+        listed: Listed<'_>,
         time: f64,
         activity: &Activity,
     ) {
-        pulp::Arch::new().dispatch(Task { sums: self, written, scratch, time, activity });
+        pulp::Arch::new().dispatch(Task { sums: self, written, scratch, listed, time, activity });
     }
 
     #[inline(always)]
@@ -55,32 +57,39 @@ impl<T: Real, const D: usize> Sums<T, D> {
         &self,
         written: &mut Written<'_, T>,
         scratch: &mut Scratch<T, D>,
+        mut listed: Listed<'_>,
         time: f64,
         activity: &Activity,
     ) {
-        let Scratch { surroundings, neighbours, work } = scratch;
+        let Scratch { surroundings, neighbours, work, .. } = scratch;
         let mut particle = Particle::default();
         neighbours.prepare(&self.layout, surroundings.sees_bodies);
         for cell in 0..surroundings.cells.len() {
             let own = surroundings.cells[cell].clone();
-            SweepPart::Search.begin(activity);
-            surroundings.select(own.clone());
-            let longest = match self.kernels {
-                Kernels::Uniform(_) => T::zero(),
-                Kernels::Adaptive(_) => {
-                    surroundings.largest(&self.layout, Quantity::SmoothingLength)
-                }
-            };
-            for k in own {
+            let mut is_selected = false;
+            let mut longest = T::zero();
+            for k in own.clone() {
                 surroundings.look_up(&self.layout, k, &mut particle);
                 if !self.acts_at(particle[Quantity::WallDepth]) {
                     for column in &mut written[..self.outputs.len()] {
                         column[k] = T::zero();
                     }
+                    listed.pass();
                     continue;
                 }
                 particle.no_slip = self.no_slip(&particle, surroundings);
-                neighbours.gather(surroundings, &particle, &self.kernels, longest, activity);
+                SweepPart::Search.begin(activity);
+                let known = listed.read();
+                if known.is_none() && !is_selected {
+                    surroundings.select(own.clone());
+                    if let Kernels::Adaptive(_) = self.kernels {
+                        longest = surroundings.largest(&self.layout, Quantity::SmoothingLength);
+                    }
+                    is_selected = true;
+                }
+                let kernels = &self.kernels;
+                neighbours.gather(surroundings, &particle, kernels, longest, known, activity);
+                listed.write(neighbours.found());
                 SweepPart::Terms.begin(activity);
                 let mut sums = Values::zero();
                 self.sum(&particle, neighbours, work, &mut sums);
@@ -159,6 +168,8 @@ pub(crate) struct Scratch<T, const D: usize> {
     pub surroundings: Surroundings<T, D>,
     neighbours: Neighbours<T, D>,
     work: Work<T>,
+    /// Where lists of neighbours grow.
+    pub list: List,
 }
 
 impl<T: Real, const D: usize> Default for Scratch<T, D> {
@@ -167,6 +178,7 @@ impl<T: Real, const D: usize> Default for Scratch<T, D> {
             surroundings: Surroundings::default(),
             neighbours: Neighbours::default(),
             work: Work::default(),
+            list: List::new(),
         }
     }
 }
@@ -176,6 +188,7 @@ struct Task<'s, 'n, T: Real, const D: usize> {
     sums: &'s Sums<T, D>,
     written: &'s mut Written<'n, T>,
     scratch: &'s mut Scratch<T, D>,
+    listed: Listed<'s>,
     time: f64,
     activity: &'s Activity,
 }
@@ -185,6 +198,6 @@ impl<T: Real, const D: usize> pulp::WithSimd for Task<'_, '_, T, D> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.sums.run(self.written, self.scratch, self.time, self.activity);
+        self.sums.run(self.written, self.scratch, self.listed, self.time, self.activity);
     }
 }

@@ -109,6 +109,12 @@ impl<T: Real, const D: usize> Surroundings<T, D> {
             && self.pages[depth / RECORD].iter().any(|record| record[depth % RECORD] > T::zero());
     }
 
+    /// Number of all.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.places[0].len()
+    }
+
     /// Finds the sub-domain's own particles, of which there are `count`, among all.
     fn locate<P: Real>(&mut self, near: &Near<'_, Cells<P>>, count: usize) {
         let first = near.spans()[0].start;

@@ -10,6 +10,7 @@ use crate::fields::Fields;
 use crate::gathered::{Gathered, Wanted};
 use crate::imposed::Imposed;
 use crate::kernel::adaptive::Kernels;
+use crate::pairs::{Keeping, Listed, MOST_LISTED, keep};
 use crate::quantity::Quantity;
 use crate::sums::{Scratch, Sums, Written};
 use crate::sweep_part::SweepPart;
@@ -24,6 +25,7 @@ pub(crate) struct Sweep<T, P, const D: usize> {
     /// Where what is summed up goes.
     outputs: Vec<Rate<T>>,
     sums: Sums<T, D>,
+    keeping: Keeping,
 }
 
 impl<T: Real, P: Real, const D: usize> Sweep<T, P, D> {
@@ -78,7 +80,14 @@ impl<T: Real, P: Real, const D: usize> Sweep<T, P, D> {
             imposed: accelerates.then(|| imposed.clone()),
             friction: if sees_velocity { friction.clone() } else { Friction::AsGiven },
         };
-        Self { name: format!("sph {}", names.join(", ")), gathered, outputs, sums }
+        let name = format!("sph {}", names.join(", "));
+        Self { name, gathered, outputs, sums, keeping: Keeping::Nothing }
+    }
+
+    /// With lists of neighbours that it writes or reads.
+    pub fn keeping(mut self, keeping: Keeping) -> Self {
+        self.keeping = keeping;
+        self
     }
 }
 
@@ -106,6 +115,10 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for Sweep<T, P, D> {
             *column = rates.column(rate).whole();
         }
         let depth = self.gathered.wall_depth().map(|depth| near.state(depth).own().whole());
+        if let Keeping::Writes(lists) = self.keeping {
+            // Nobody reads what an earlier step wrote.
+            rates.notes(lists).clear();
+        }
         if depth.is_some_and(|depth| !depth.iter().any(|&depth| self.sums.acts_at(depth))) {
             for column in &mut written[..self.outputs.len()] {
                 column.fill(T::zero());
@@ -113,9 +126,23 @@ impl<T: Real, P: Real, const D: usize> RateStage<Cells<P>> for Sweep<T, P, D> {
             return Ok(());
         }
         let range = self.sums.kernels.range();
-        SweepPart::Collect.begin(near.activity());
+        let activity = near.activity();
+        SweepPart::Collect.begin(activity);
         scratch.surroundings.collect(&self.gathered, near, &block, range);
-        self.sums.write(&mut written, scratch, moment.stage_time, near.activity());
+        let time = moment.stage_time;
+        let mut sum =
+            |scratch, listed| self.sums.write(&mut written, scratch, listed, time, activity);
+        match self.keeping {
+            Keeping::Reads(lists) => sum(scratch, Listed::Read(&rates.notes(lists))),
+            Keeping::Writes(lists) if scratch.surroundings.len() <= MOST_LISTED => {
+                let mut list = std::mem::take(&mut scratch.list);
+                list.clear();
+                sum(scratch, Listed::Written(&mut list));
+                keep(&list, &mut rates.notes(lists));
+                scratch.list = list;
+            }
+            Keeping::Nothing | Keeping::Writes(_) => sum(scratch, Listed::Not),
+        }
         Ok(())
     }
 }

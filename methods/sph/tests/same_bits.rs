@@ -8,8 +8,9 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{HandOut, Real, Schedule, Settings, Simulation};
 use finegrain_sph::{
-    ArtificialViscosity, DensityDiffusion, DiffusionForm, Fluid, Physics, Scheme, ShockCapturing,
-    Slip, SmoothingFunction, Sph, Stabilisation, Start, StateEquation, Viscosity, WallPressure,
+    ArtificialViscosity, DensityDiffusion, DiffusionForm, Fluid, Pairs, Physics, Scheme,
+    ShockCapturing, Slip, SmoothingFunction, Sph, Stabilisation, Start, StateEquation, Viscosity,
+    WallPressure, WallVelocity,
 };
 
 fn hash<T: Real>(mut simulation: Simulation<Cells<T>>) -> u64 {
@@ -73,6 +74,23 @@ fn mixed_precision() {
 #[test]
 fn three_sweeps_with_pressure_transport_and_walls_from_the_fluid() {
     same_bits::<f64>(2, Viscosity::Adami, &flow::edac());
+}
+
+/// Lists of neighbours hold what a search finds, in the same order.
+#[test]
+fn sweeps_that_look_neighbours_up_or_search_for_them() {
+    let [kept, searched] = [Pairs::Kept, Pairs::Searched].map(|pairs| {
+        let settings = || Settings { workers: 2, ..Settings::default() };
+        let paper = Scheme { pairs, ..Scheme::default() };
+        let fitted = Scheme { wall_velocity: WallVelocity::Fitted, pairs, ..flow::edac() };
+        let (strain, adami) = (Viscosity::StrainRate, Viscosity::Adami);
+        [
+            hash(flow::flow::<f64, f64>(3, strain, &paper, true, settings()).0),
+            hash(flow::flow::<f32, f32>(2, strain, &paper, false, settings()).0),
+            hash(flow::flow::<f32, f64>(2, adami, &fitted, true, settings()).0),
+        ]
+    });
+    assert_eq!(kept, searched);
 }
 
 #[test]

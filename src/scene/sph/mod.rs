@@ -41,8 +41,8 @@ use finegrain_framework::run::{Dump, Run, Summary};
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Integrator, Real, Simulation, State};
 use finegrain_sph::{
-    Density, Edac, Fields, Gradient, PressureForm, Scheme, SmoothingFunction, Sph, StateEquation,
-    Viscosity, WallPressure, WallVelocity, measure,
+    Density, Edac, Fields, Gradient, Pairs, PressureForm, Scheme, SmoothingFunction, Sph,
+    StateEquation, Viscosity, WallPressure, WallVelocity, measure,
 };
 
 use super::parameter::{Parameter, Parameters};
@@ -51,7 +51,7 @@ use super::{Orders, Prepared, Report, SceneError};
 use crate::figure::{Axis, Field};
 
 /// Parameters of the discretisation that scenes of all liquids share.
-const LIQUID_PARAMETERS: [Parameter; 7] = [
+const LIQUID_PARAMETERS: [Parameter; 8] = [
     Parameter::choice(
         "kernel",
         &[
@@ -85,6 +85,12 @@ const LIQUID_PARAMETERS: [Parameter; 7] = [
         "in velocity gradients and the antisymmetric pressure gradient: of the kernel, or exact for \
          linear fields (Bonet & Lok 1999)",
     ),
+    Parameter::choice(
+        "pairs",
+        &["searched", "kept"],
+        "every sweep searches for neighbours, or those after the first look up what it has found, at two \
+         bytes a pair; the same bits",
+    ),
 ];
 
 /// What the parameters of all liquids say about the discretisation.
@@ -102,6 +108,10 @@ fn liquid_scheme(parameters: &Parameters) -> Scheme {
         gradient: match parameters.choice("gradient") {
             "corrected" => Gradient::Corrected,
             _ => Gradient::Kernel,
+        },
+        pairs: match parameters.choice("pairs") {
+            "kept" => Pairs::Kept,
+            _ => Pairs::Searched,
         },
         ..Scheme::default()
     }
