@@ -16,7 +16,7 @@ const WIDEST_NAME: f64 = 260.0;
 /// Length of the piece of line beside a name.
 const SAMPLE: f64 = 34.0;
 
-/// A line chart: several named series with a marker at every point, and a legend beside them.
+/// A line chart: several named series with markers, and a legend beside them.
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Chart {
@@ -137,7 +137,10 @@ impl Chart {
             }
         }
         for (index, line) in self.series.iter().enumerate() {
-            for point in self.runs(line).flat_map(place) {
+            // More would touch each other and hide the lines.
+            const MARKERS: usize = 60;
+            let every = line.points.len().div_ceil(MARKERS).max(1);
+            for point in self.runs(line).flat_map(place).step_by(every) {
                 marker::draw(&mut canvas, index, point);
             }
         }
