@@ -86,6 +86,14 @@ fn flow_to_and_fro_is_right_in_second_order() {
     assert!(fine < 1e-4 && (order - 2.0).abs() < 0.1, "{coarse} {fine}");
 }
 
+/// With an interpolated wall, which leaves the order as it happens to cut the sites.
+#[test]
+fn flow_to_and_fro_in_a_pipe_converges() {
+    let at = |n| errors("womersley", &[("section", "pipe"), ("resolution", n)])["velocity_l2"];
+    let [coarse, fine] = [at("16"), at("32")];
+    assert!(fine < 0.002 && coarse / fine > 3.0, "{coarse} {fine}");
+}
+
 #[test]
 fn layers_of_shear_roll_up() {
     let report = run("double-shear-layer", &[("resolution", "128")], Orders::default());
