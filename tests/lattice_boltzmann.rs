@@ -86,6 +86,14 @@ fn flow_to_and_fro_is_right_in_second_order() {
     assert!(fine < 1e-4 && (order - 2.0).abs() < 0.1, "{coarse} {fine}");
 }
 
+/// With an interpolated wall, which leaves the order as it happens to cut the sites.
+#[test]
+fn flow_to_and_fro_in_a_pipe_converges() {
+    let at = |n| errors("womersley", &[("section", "pipe"), ("resolution", n)])["velocity_l2"];
+    let [coarse, fine] = [at("16"), at("32")];
+    assert!(fine < 0.002 && coarse / fine > 3.0, "{coarse} {fine}");
+}
+
 #[test]
 fn layers_of_shear_roll_up() {
     let report = run("double-shear-layer", &[("resolution", "128")], Orders::default());
@@ -124,7 +132,7 @@ fn flow_past_a_cylinder_between_walls() {
     let report = run("channel-cylinder", &settings, Orders::default());
     assert!(report.errors["drag"].abs() < 0.006, "{:?}", report.errors);
     assert!(report.errors["lift"].abs() < 0.15, "{:?}", report.errors);
-    assert!(report.errors["pressure_difference"].abs() < 0.05, "{:?}", report.errors);
+    assert!(report.errors["pressure_difference"].abs() < 0.04, "{:?}", report.errors);
 }
 
 #[test]

@@ -35,6 +35,15 @@ pub enum Shape {
         /// Radius, above zero.
         radius: f64,
     },
+    /// All points outside of a circular cylinder without ends: the wall of a pipe.
+    Bore {
+        /// The direction in which the pipe goes.
+        axis: Axis,
+        /// Any point of its centre line; the component along `axis` does not matter.
+        centre: [f64; 3],
+        /// Radius of the pipe, above zero.
+        radius: f64,
+    },
     /// A ball.
     Sphere {
         /// Centre.
@@ -103,7 +112,9 @@ impl Shape {
     pub fn check(&self) -> Result<(), ShapeError> {
         let finite = |v: [f64; 3]| v.iter().all(|c| c.is_finite());
         match *self {
-            Shape::Cylinder { centre, radius, .. } | Shape::Sphere { centre, radius } => {
+            Shape::Cylinder { centre, radius, .. }
+            | Shape::Bore { centre, radius, .. }
+            | Shape::Sphere { centre, radius } => {
                 if !(radius > 0.0 && radius.is_finite()) {
                     return Err(ShapeError::Radius(radius));
                 }
@@ -134,6 +145,9 @@ impl Shape {
             Shape::Cylinder { axis, centre, radius } => {
                 norm(across(axis, difference(x, centre))) - radius
             }
+            Shape::Bore { axis, centre, radius } => {
+                radius - norm(across(axis, difference(x, centre)))
+            }
             Shape::Sphere { centre, radius } => norm(difference(x, centre)) - radius,
             Shape::Cuboid { low, high } => {
                 let beyond = beyond_faces(x, low, high);
@@ -160,6 +174,10 @@ impl Shape {
             Shape::Cylinder { axis, centre, radius } => {
                 let start = across(axis, difference(from, centre));
                 entry_into_ball(start, across(axis, way), radius)
+            }
+            Shape::Bore { axis, centre, radius } => {
+                let start = across(axis, difference(from, centre));
+                exit_from_ball(start, across(axis, way), radius)
             }
             Shape::Sphere { centre, radius } => {
                 entry_into_ball(difference(from, centre), way, radius)
@@ -205,6 +223,9 @@ impl Shape {
                     }
                 }
             }
+            Shape::Bore { axis, centre, radius } => {
+                Shape::Cylinder { axis, centre, radius }.normal(x).map(|n| -n)
+            }
             Shape::Sphere { centre, .. } => {
                 let radial = difference(x, centre);
                 if norm(radial) > 0.0 { unit(radial) } else { [1.0, 0.0, 0.0] }
@@ -245,6 +266,15 @@ fn entry_into_ball(start: [f64; 3], way: [f64; 3], radius: f64) -> Option<f64> {
     let c = dot(start, start) - radius * radius;
     let discriminant = b * b - a * c;
     (b < 0.0 && discriminant >= 0.0).then(|| c / (discriminant.sqrt() - b))
+}
+
+/// The fraction of the `way` from `start`, inside of a ball about the origin, at which it leaves the ball:
+/// the larger root, likewise; `None` if the way stays where it is.
+fn exit_from_ball(start: [f64; 3], way: [f64; 3], radius: f64) -> Option<f64> {
+    let (a, b) = (dot(way, way), dot(start, way));
+    let c = dot(start, start) - radius * radius;
+    let root = (b * b - a * c).sqrt();
+    (a > 0.0).then(|| if b > 0.0 { -c / (b + root) } else { (root - b) / a })
 }
 
 /// The part of `v` at right angles to `axis`.

@@ -8,6 +8,11 @@ fn shapes() -> Vec<Shape> {
     let mut shapes: Vec<Shape> = [Axis::X, Axis::Y, Axis::Z]
         .map(|axis| Shape::Cylinder { axis, centre, radius: 0.4 })
         .into();
+    shapes.extend([Axis::X, Axis::Y, Axis::Z].map(|axis| Shape::Bore {
+        axis,
+        centre,
+        radius: 0.7,
+    }));
     shapes.push(Shape::Sphere { centre, radius: 0.5 });
     shapes.push(Shape::Cuboid { low: [-0.5, -0.4, -0.3], high: [0.2, 0.6, 0.4] });
     shapes.push(Shape::Cuboid { low: [-0.5, -0.4, -INFINITY], high: [0.2, INFINITY, INFINITY] });

@@ -80,6 +80,7 @@ mod relaxation;
 mod row;
 mod sites;
 mod stream;
+mod tiles;
 
 pub use body::{Body, Wall};
 pub use collision::Collision;

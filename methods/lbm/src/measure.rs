@@ -83,42 +83,22 @@ pub fn largest_speed<T: Real>(whole: &mut Whole<'_, Grid>, parts: &Parts<T>) -> 
     squared.sqrt()
 }
 
-/// Pressures at points, Pa, by linear interpolation between sites in every direction; what lies in bodies
-/// or beyond the mesh counts as 0. The derived fields must be up to date.
+/// Pressures of sites, Pa; 0 in bodies. The derived fields must be up to date.
 pub fn pressures<T: Real, const N: usize>(
     whole: &mut Whole<'_, Grid>,
     parts: &Parts<T>,
-    points: &[[f64; 3]; N],
+    sites: &[[usize; 3]; N],
 ) -> [f64; N] {
-    let Parts { fields, mesh, lattice, .. } = parts;
-    // In units of the spacing, from the first site.
-    let places = points.map(|point| {
-        let first = mesh.position([0; 3]);
-        [0, 1, 2]
-            .map(|a| if a < lattice.dims() { (point[a] - first[a]) / mesh.spacing } else { 0.0 })
-    });
     whole.sum(|near| {
-        let pressure = near.rate_rows(fields.pressure);
-        let mut sums = [0.0; N];
+        let pressure = near.rate_rows(parts.fields.pressure);
+        let mut found = [0.0; N];
         for (j, k) in near.sub_domain().rows() {
-            for (sum, [x, y, z]) in sums.iter_mut().zip(places) {
-                let weight = share(y, j) * share(z, k);
-                if weight > 0.0 {
-                    let row = pressure.row(j as isize, k as isize);
-                    let next = x.floor().max(0.0) as usize;
-                    for (i, p) in row.iter().enumerate().skip(next).take(2) {
-                        *sum += weight * share(x, i) * p.as_f64();
-                    }
-                }
+            for (found, [x, ..]) in found.iter_mut().zip(sites).filter(|(_, s)| s[1..] == [j, k]) {
+                *found = pressure.row(j as isize, k as isize)[*x].as_f64();
             }
         }
-        sums
+        found
     })
-}
-
-/// Weight of a site in linear interpolation at a place.
-fn share(place: f64, site: usize) -> f64 {
-    (1.0 - (place - site as f64).abs()).max(0.0)
 }
 
 /// Force of the fluid on body number `body`, N (N/m in 2-D), in the step to come: the momentum of the

@@ -11,7 +11,7 @@ use crate::collision::{Central, Collide, Collision, Cumulant, Mrt, Regularised, 
 use crate::derived::Derived;
 use crate::error::LbmError;
 use crate::fields::Fields;
-use crate::in_place::{self, InPlace, TurnBack, Turns};
+use crate::in_place::{InPlace, TurnBack, Turns};
 use crate::kernel::{Collider, Kernel};
 use crate::lattice::{D2Q9, D3Q19, D3Q27, Lattice, LatticeKind};
 use crate::mesh::Mesh;
@@ -22,11 +22,7 @@ use crate::row::Local;
 use crate::sites::{self, Sites};
 use crate::start::{Setting, Start};
 use crate::stream::Stream;
-
-/// Sites of a tile: rows next to one another in one plane. Every population is read once a step, so that
-/// compact tiles would reuse nothing; long stretches of memory are what it is fastest to walk along, and
-/// with tiles one plane thick those who run ahead stay few planes apart, so that these stay in the cache.
-const TILE: usize = 4096;
+use crate::tiles;
 
 /// A lattice Boltzmann model, ready to run.
 pub struct Lbm<T: Real> {
@@ -177,15 +173,7 @@ impl Builder<'_> {
     ) -> Result<Lbm<T>, LbmError> {
         let &Self { mesh, fluid, physics, scheme, start } = self;
         let (streaming, velocities) = (scheme.streaming(physics)?, scheme.lattice.velocities());
-        let grid =
-            Grid::builder(mesh.shape).origin(mesh.position([0; 3])).spacing([mesh.spacing; 3]);
-        let grid = grid.tile((TILE / mesh.shape[0]).max(1), 1);
-        let domain = match streaming {
-            Streaming::TwoGrids => grid.periodic(mesh.periodic),
-            // What leaves the mesh is kept at its other end.
-            Streaming::InPlace => grid.periodic([true; 3]).shifts(&in_place::offsets(velocities)),
-        };
-        let domain = domain.build();
+        let domain = tiles::grid(mesh, scheme.lattice, streaming);
         let mut columns = Columns::new(domain.points());
         let fields = Fields::<T>::declare(&mut columns, scheme.lattice, streaming);
         let solid = sites::solid(mesh, physics)?;

@@ -119,15 +119,6 @@ pub(crate) fn copy_around<T: Copy>(row: &[T], first: isize, into: &mut [T]) {
     }
 }
 
-/// Copies it back.
-pub(crate) fn copy_back<T: Copy>(from: &[T], first: isize, row: &mut [T]) {
-    let mut place = wrap(first as i32, row.len());
-    for value in from {
-        row[place] = *value;
-        place = if place + 1 == row.len() { 0 } else { place + 1 };
-    }
-}
-
 /// No rows: to be filled in.
 #[inline(always)]
 pub(crate) fn none<'a, T, const Q: usize>() -> [&'a mut [T]; Q] {

@@ -43,6 +43,38 @@ impl Run {
         let last = if end == nx { first.max(end - line::<T>()) } else { end };
         [[first, last], [last, end], [start, first]].into_iter().filter(|[start, end]| start < end)
     }
+
+    /// The run without lines at the ends of their row of `nx` sites, and these.
+    pub fn without_ends<T>(self, nx: usize) -> ([usize; 2], Ends) {
+        let (start, end) = (self.start as usize, self.end as usize);
+        let mut ends = Ends { lines: [0; 2], count: 0 };
+        let mut inner = [start, end];
+        if start == 0 {
+            inner[0] = line::<T>();
+            ends.count = 1;
+        }
+        if end == nx && inner[0] < end {
+            inner[1] = end - line::<T>();
+            ends.lines[ends.count] = inner[1];
+            ends.count += 1;
+        }
+        (inner, ends)
+    }
+}
+
+/// Lines of sites at the ends of a row: where they begin, none to two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ends {
+    lines: [usize; 2],
+    count: usize,
+}
+
+impl std::ops::Deref for Ends {
+    type Target = [usize];
+
+    fn deref(&self) -> &[usize] {
+        &self.lines[..self.count]
+    }
 }
 
 /// Scalars in a line of the cache, where columns begin: packs of runs lie in lines, so that they are

@@ -21,7 +21,7 @@ use crate::scene::channel_cylinder::{
     self, CENTRE, ChannelCylinder, DENSITY, DIAMETER, HEIGHT, LENGTH, Loads, VISCOSITY,
 };
 use crate::scene::parameter::{Parameter, Parameters};
-use crate::scene::{Precision, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError, cubic};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
@@ -91,10 +91,46 @@ struct CylinderFlow {
     spacing: f64,
 }
 
-/// Places before the surface, in spacings, from which the pressure there is extrapolated, and their
-/// weights in a cubic: nearer, sites in the cylinder would count.
-const BEFORE: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
-const WEIGHTS: [f64; 4] = [4.0, -6.0, 4.0, -1.0];
+/// Sites by which the pressure is found where the centre line meets the cylinder: columns of four
+/// rows around the line, the nearest to the cylinder first. Towards the stagnation point the pressure rises
+/// steeply, in a layer less than two spacings thick with 82 points across (Hiemenz 1911): the columns begin as
+/// near to the cylinder as they can without sites so close to it that their links make the pressure jump.
+struct Probe {
+    columns: [usize; 4],
+    rows: [usize; 4],
+    /// Where the point is, counted in columns from the first and in rows from the first.
+    place: [f64; 2],
+}
+
+impl Probe {
+    /// Sites of a probe.
+    const SITES: usize = 16;
+
+    /// In front of the cylinder if `direction` is -1, behind it if 1.
+    fn new(spacing: f64, direction: f64) -> Self {
+        let x = (CENTRE[0] + direction * 0.5 * DIAMETER) / spacing + 0.5;
+        let y = CENTRE[1] / spacing - 0.5;
+        // Whole numbers of columns count from the cylinder on.
+        let nearest = (direction * x + 0.25).ceil();
+        let lowest = y.floor() - 1.0;
+        Self {
+            columns: [0.0, 1.0, 2.0, 3.0].map(|n| (direction * (nearest + n)) as usize),
+            rows: [0.0, 1.0, 2.0, 3.0].map(|n| (lowest + n) as usize),
+            place: [direction * x - nearest, y - lowest],
+        }
+    }
+
+    fn sites(&self) -> [[usize; 3]; Self::SITES] {
+        std::array::from_fn(|n| [self.columns[n / 4], self.rows[n % 4], 0])
+    }
+
+    /// By cubics across the line, and along it.
+    fn pressure(&self, of_sites: &[f64]) -> f64 {
+        let on_line: Vec<_> =
+            of_sites.chunks(4).map(|column| cubic::value(column, self.place[1])).collect();
+        cubic::value(&on_line, self.place[0])
+    }
+}
 
 impl<T: Compiled> Flow<T> for CylinderFlow {
     fn end_time(&self) -> f64 {
@@ -103,20 +139,19 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
 
     fn observe(&self, run: Run<Grid>, parts: &Parts<T>) -> Run<Grid> {
         let (scene, parts) = (self.scene, parts.clone());
-        let mut points = [[CENTRE[0], CENTRE[1], 0.0]; 2 * BEFORE.len()];
-        for (n, before) in BEFORE.iter().enumerate() {
-            points[n][0] -= 0.5 * DIAMETER + before * self.spacing;
-            points[BEFORE.len() + n][0] += 0.5 * DIAMETER + before * self.spacing;
+        let probes = [-1.0, 1.0].map(|direction| Probe::new(self.spacing, direction));
+        let mut sites = [[0; 3]; 2 * Probe::SITES];
+        for (sites, probe) in sites.chunks_mut(Probe::SITES).zip(&probes) {
+            sites.copy_from_slice(&probe.sites());
         }
         let [drag, lift, difference] = Loads::COLUMNS;
         let columns = [drag, lift, difference, "largest_speed", "excess_mass"];
         let every = Every::Time(scene.sampling());
         let run = run.monitor("flow", every, columns, move |whole| {
             let force = measure::force_on_body(whole, &parts, 0);
-            let pressures = measure::pressures(whole, &parts, &points);
-            let at = |of: &[f64]| of.iter().zip(WEIGHTS).map(|(p, weight)| p * weight).sum::<f64>();
-            let (before, behind) = pressures.split_at(BEFORE.len());
-            let difference = at(before) - at(behind);
+            let pressures = measure::pressures(whole, &parts, &sites);
+            let (before, behind) = pressures.split_at(Probe::SITES);
+            let difference = probes[0].pressure(before) - probes[1].pressure(behind);
             let [drag, lift] = [force[0], force[1]].map(|force| scene.coefficient(force));
             let speed = measure::largest_speed(whole, &parts);
             [drag, lift, difference, speed, measure::totals(whole, &parts).excess_mass]
@@ -136,5 +171,30 @@ impl<T: Compiled> Flow<T> for CylinderFlow {
 
     fn title(&self) -> String {
         self.scene.title()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pressures that are a cubic in either direction, whatever the mesh, and no site in the cylinder.
+    #[test]
+    fn the_pressure_is_extrapolated_to_the_surface() {
+        let pressure = |x: f64, y: f64| 1.0 + 3.0 * x - 40.0 * x.powi(3) + (y - 0.2).powi(2);
+        for resolution in [20.0, 41.0, 57.0, 82.0, 123.0] {
+            let spacing = HEIGHT / resolution;
+            for (direction, x) in [(-1.0, 0.15), (1.0, 0.25)] {
+                let probe = Probe::new(spacing, direction);
+                let at = probe.sites().map(|[i, j, _]| {
+                    // As the mesh has it: the first sites half a spacing outside.
+                    [(i as f64 - 0.5) * spacing, (j as f64 + 0.5) * spacing]
+                });
+                let distance = |[x, y]: [f64; 2]| (x - CENTRE[0]).hypot(y - CENTRE[1]);
+                assert!(at.iter().all(|&at| distance(at) > 0.5 * DIAMETER + 0.2 * spacing));
+                let found = probe.pressure(&at.map(|[x, y]| pressure(x, y)));
+                assert!((found - pressure(x, 0.2)).abs() < 1e-12, "{resolution}: {found}");
+            }
+        }
     }
 }

@@ -208,16 +208,19 @@ impl Grid {
         [cut(tj, self.tile[0], self.shape[1]), cut(tk, self.tile[1], self.shape[2])]
     }
 
-    /// The rows that are `shift` away from those of tile number `id`, one by one.
+    /// The rows that are `shift` away from those of tile number `id`: of each plane those before the rows
+    /// go around the end of the grid, and those after; either may be none.
     fn displaced(&self, id: usize, shift: [isize; 2]) -> impl Iterator<Item = Span> {
         let [rows, planes] = self.extent(id % self.tiles[0], id / self.tiles[0]);
         let [nx, ny, nz] = self.shape;
         let along =
             move |i: usize, by: isize, n: usize| (i as isize + by).rem_euclid(n as isize) as usize;
+        let turn = along(0, -shift[0], ny).clamp(rows.start, rows.end);
         planes.flat_map(move |k| {
-            rows.clone().map(move |j| {
-                let row = along(k, shift[1], nz) * ny + along(j, shift[0], ny);
-                Span { start: row * nx, end: (row + 1) * nx }
+            [rows.start..turn, turn..rows.end].map(|rows| {
+                let first = along(k, shift[1], nz) * ny + along(rows.start, shift[0], ny);
+                // A row is there to begin at even for none.
+                Span { start: first * nx, end: (first + rows.len()) * nx }
             })
         })
     }

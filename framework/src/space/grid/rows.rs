@@ -1,5 +1,7 @@
 //! Rows of a grid's columns, as stages see them.
 
+use std::ops::Range;
+
 use super::{Grid, Tile};
 use crate::columns::{Element, Handle, Rate, State};
 use crate::domain::Span;
@@ -43,7 +45,7 @@ fn wrap(i: isize, n: usize, periodic: bool) -> Option<usize> {
 pub struct RowsMut<'a, T> {
     tile: Tile<'a>,
     part: PartMut<'a, T>,
-    /// Whether these are other rows than the tile's, one by one.
+    /// Whether these are other rows than the tile's.
     is_shifted: bool,
 }
 
@@ -57,9 +59,21 @@ impl<T> RowsMut<'_, T> {
     pub fn row(&mut self, j: usize, k: usize) -> &mut [T] {
         let (span, range) = place(&self.tile, j, k);
         if self.is_shifted {
-            return self.part.span(span * self.tile.rows.len() + j - self.tile.rows.start);
+            return shifted(&mut self.part, span, range);
         }
         &mut self.part.span(span)[range]
+    }
+}
+
+/// A row of a plane that is owned with an offset: in the span before the rows go around the end of the grid, or
+/// in that after.
+#[inline]
+fn shifted<'a, T>(part: &'a mut PartMut<'_, T>, plane: usize, range: Range<usize>) -> &'a mut [T] {
+    let before = part.span(2 * plane).len();
+    if range.end <= before {
+        &mut part.span(2 * plane)[range]
+    } else {
+        &mut part.span(2 * plane + 1)[range.start - before..range.end - before]
     }
 }
 
@@ -67,7 +81,7 @@ impl<T> RowsMut<'_, T> {
 pub struct RowsOfMut<'a, T, const N: usize> {
     tile: Tile<'a>,
     parts: [PartMut<'a, T>; N],
-    /// Of each column, whether these are other rows than the tile's, one by one.
+    /// Of each column, whether these are other rows than the tile's.
     is_shifted: [bool; N],
 }
 
@@ -79,11 +93,11 @@ impl<T, const N: usize> RowsOfMut<'_, T, N> {
     #[inline]
     pub fn row(&mut self, j: usize, k: usize) -> [&mut [T]; N] {
         let (span, range) = place(&self.tile, j, k);
-        let shifted = span * self.tile.rows.len() + j - self.tile.rows.start;
         let mut rows = std::array::from_fn(|_| <&mut [T]>::default());
         for ((row, part), is_shifted) in rows.iter_mut().zip(&mut self.parts).zip(self.is_shifted) {
+            let range = range.clone();
             *row =
-                if is_shifted { part.span(shifted) } else { &mut part.span(span)[range.clone()] };
+                if is_shifted { shifted(part, span, range) } else { &mut part.span(span)[range] };
         }
         rows
     }
