@@ -4,7 +4,9 @@ mod solution;
 
 use std::f64::consts::TAU;
 
-use finegrain_fd::{Compiled, Fd, Mesh, NavierStokes, Parts, Side, StaggeredOrder, measure};
+use finegrain_fd::{
+    Compiled, Fd, FlowEnd, Mesh, NavierStokes, Parts, Side, StaggeredOrder, measure,
+};
 use finegrain_framework::space::Grid;
 use finegrain_framework::{Integrator, Schedule, Settings, Simulation};
 use solution::order;
@@ -13,7 +15,7 @@ fn flow(viscosity: f64, order: StaggeredOrder) -> NavierStokes {
     NavierStokes {
         viscosity,
         acceleration: [0.0; 3],
-        wall_velocity: [[[0.0; 3]; 2]; 3],
+        ends: [[FlowEnd::REST; 2]; 3],
         bodies: Vec::new(),
         order,
         integrator: Integrator::Rk4,
@@ -221,8 +223,12 @@ fn plates_in_every_direction() {
         sides[across] = Side::cells(9, 0.0, 1.0);
         let mut equation = flow(1.0, StaggeredOrder::Second);
         equation.acceleration[along] = 8.0;
-        equation.wall_velocity[across][0][along] = -0.2;
-        equation.wall_velocity[across][1][along] = 0.5;
+        let sliding = |speed: f64| {
+            let mut velocity = [0.0; 3];
+            velocity[along] = speed;
+            FlowEnd::Wall(velocity)
+        };
+        equation.ends[across] = [sliding(-0.2), sliding(0.5)];
         let exact = |x: [f64; 3]| {
             let mut u = [0.0; 3];
             u[along] = 4.0 * x[across] * (1.0 - x[across]) + 0.7 * x[across] - 0.2;
@@ -235,12 +241,19 @@ fn plates_in_every_direction() {
     }
 }
 
+/// A wall that slides along an axis at speed 1.
+fn sliding(along: usize) -> FlowEnd {
+    let mut velocity = [0.0; 3];
+    velocity[along] = 1.0;
+    FlowEnd::Wall(velocity)
+}
+
 /// A cavity under a lid that moves along x, and the same lying on its side.
 #[test]
 fn a_cavity_that_lies_on_its_side_is_the_same() {
     let cavity = |lid: usize, along: usize| {
         let mut equation = flow(0.01, StaggeredOrder::Second);
-        equation.wall_velocity[lid][1][along] = 1.0;
+        equation.ends[lid][1] = sliding(along);
         let mesh = Mesh::new([Side::cells(20, 0.0, 1.0); 2]);
         let fd = equation.model::<f64>(&mesh, &|_| [0.0; 3]).unwrap();
         let (simulation, parts) = run_until(fd, 1.0);
@@ -266,7 +279,7 @@ fn a_box_with_its_lid_on_any_side_is_the_same() {
     let mesh = Mesh::new([Side::cells(N, 0.0, 1.0); 3]);
     let cavity = |lid: usize, end: usize, along: usize| {
         let mut equation = flow(0.02, StaggeredOrder::Second);
-        equation.wall_velocity[lid][end][along] = 1.0;
+        equation.ends[lid][end] = sliding(along);
         let fd = equation.model::<f64>(&mesh, &|_| [0.0; 3]).unwrap();
         let (simulation, parts) = run_until(fd, 0.5);
         [0, 1, 2].map(|a| simulation.columns().values(parts.unknowns[a]).to_vec())
@@ -312,7 +325,7 @@ fn shear_across_z_decays_in_second_order() {
         let across = Side::cells(n, 0.0, 1.0);
         let mesh = Mesh::new([Side::periodic(4, 0.0, 1.0), Side::periodic(4, 0.0, 1.0), across]);
         let mut equation = flow(1.0, StaggeredOrder::Second);
-        equation.wall_velocity[2][1] = [1.0, -0.5, 0.0];
+        equation.ends[2][1] = FlowEnd::Wall([1.0, -0.5, 0.0]);
         let fd = equation.model::<f64>(&mesh, &|x| exact(x, 0.0)).unwrap();
         let (simulation, parts) = run_until(fd, 0.1);
         error(&simulation, &parts, |x| exact(x, 0.1))

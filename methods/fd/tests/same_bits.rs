@@ -2,8 +2,8 @@
 //! restart.
 
 use finegrain_fd::{
-    Advection, Boundary, Compiled, Condition, Data, Face, Fd, Gas, GasEnd, GasState, Heat, Mesh,
-    NavierStokes, Order, Side, StaggeredOrder, Wave,
+    Advection, Boundary, Compiled, Condition, Data, Face, Fd, FlowEnd, Gas, GasEnd, GasState, Heat,
+    Mesh, NavierStokes, Order, Side, Spread, StaggeredOrder, Wave,
 };
 use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::{HandOut, Integrator, Schedule, Settings, Simulation};
@@ -59,13 +59,13 @@ fn gas<T: Compiled>() -> Fd<T> {
 
 /// Flow along a duct with a moving wall, and in a periodic box.
 fn flow<T: Compiled>(order: StaggeredOrder, integrator: Integrator) -> Fd<T> {
-    let mut wall_velocity = [[[0.0; 3]; 2]; 3];
-    wall_velocity[1][1] = [1.0, 0.0, 0.5];
+    let mut ends = [[FlowEnd::REST; 2]; 3];
+    ends[1][1] = FlowEnd::Wall([1.0, 0.0, 0.5]);
     let acceleration = [0.1, 0.0, 0.0];
     let flow = NavierStokes {
         viscosity: 0.01,
         acceleration,
-        wall_velocity,
+        ends,
         bodies: Vec::new(),
         order,
         integrator,
@@ -80,26 +80,34 @@ fn flow<T: Compiled>(order: StaggeredOrder, integrator: Integrator) -> Fd<T> {
     flow.model(&mesh, &|x| [start(x), start([x[1], x[2], x[0]]), x[0].sin()]).unwrap()
 }
 
-/// Flow past a cylinder between walls.
-fn flow_past_a_body<T: Compiled>() -> Fd<T> {
-    let shape = Shape::Cylinder { axis: Axis::Z, centre: [0.95, 0.36, 0.0], radius: 0.13 };
+/// Flow past a cylinder between walls, in a ring or from an end to the other.
+fn flow_past_a_body<T: Compiled>(is_through: bool) -> Fd<T> {
+    let (mut ends, mut along) = ([[FlowEnd::REST; 2]; 3], Side::periodic(45, 0.0, 1.0));
+    let mut centre = [0.95, 0.36, 0.0];
+    if is_through {
+        (ends[0], along.spread) = ([FlowEnd::Inflow, FlowEnd::Outflow], Spread::Cells);
+        centre[0] = 0.5;
+    }
+    let shape = Shape::Cylinder { axis: Axis::Z, centre, radius: 0.13 };
     let flow = NavierStokes {
         viscosity: 0.01,
         acceleration: [0.1, 0.0, 0.0],
-        wall_velocity: [[[0.0; 3]; 2]; 3],
+        ends,
         bodies: vec![shape.into()],
         order: StaggeredOrder::Second,
         integrator: Integrator::Rk4,
         courant: 0.9,
     };
-    let mesh = Mesh::new([Side::periodic(45, 0.0, 1.0), Side::cells(36, 0.0, 0.8)]);
+    let mesh = Mesh::new([along, Side::cells(36, 0.0, 0.8)]);
     flow.model(&mesh, &|x| [start(x), start([x[1], x[0], 0.0]), 0.0]).unwrap()
 }
 
 #[test]
 fn of_flow_past_a_body() {
-    same_bits(flow_past_a_body::<f64>);
-    same_bits(flow_past_a_body::<f32>);
+    for is_through in [false, true] {
+        same_bits(|| flow_past_a_body::<f64>(is_through));
+        same_bits(|| flow_past_a_body::<f32>(is_through));
+    }
 }
 
 fn same_bits<T: Compiled>(model: impl Fn() -> Fd<T>) {
@@ -197,4 +205,5 @@ fn after_a_restart() {
     restarts(advection::<f64>);
     restarts(gas::<f64>);
     restarts(|| flow::<f64>(StaggeredOrder::Second, Integrator::SspRk3));
+    restarts(|| flow_past_a_body::<f64>(true));
 }

@@ -1,6 +1,6 @@
 //! The lid-driven cavity by finite differences.
 
-use finegrain_fd::{Compiled, Mesh, Parts, Side, StaggeredOrder};
+use finegrain_fd::{Compiled, FlowEnd, Mesh, Parts, Side, StaggeredOrder};
 use finegrain_framework::Simulation;
 use finegrain_framework::run::{Every, Run, Stopped, Summary};
 use finegrain_framework::space::Grid;
@@ -26,7 +26,7 @@ fn build<T: Compiled>(
     let mesh = Mesh::new([Side::cells(scene.resolution as usize, 0.0, 1.0); 2]);
     let mut equation =
         incompressible::equation(parameters, scene.viscosity(), StaggeredOrder::Second);
-    equation.wall_velocity[1][1][0] = 1.0;
+    equation.ends[1][1] = FlowEnd::Wall([1.0, 0.0, 0.0]);
     let fd = equation.model(&mesh, &|_| [0.0; 3])?;
     let description = super::description("cavity", parameters, precision);
     Ok(FdScene { fd, flow: Incompressible(scene), description })

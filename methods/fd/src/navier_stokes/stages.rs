@@ -9,7 +9,7 @@ use super::body::{Forces, Immersed, NoSlip, Still, When};
 use super::equation::{Divergence, InTheMiddle, Momentum, PressureGradient};
 use super::stencil::{Field, Source, Stencil};
 use crate::error::FdError;
-use crate::mesh::{Mesh, Side, Spread};
+use crate::mesh::Mesh;
 use crate::model::Compiled;
 use crate::operator::staggered::{self, StaggeredOrder};
 use crate::operator::value;
@@ -54,7 +54,6 @@ impl<T: Compiled> Fields<T> {
             })
         };
         let velocity = faces(|all, a| Source::State(all.velocity[a]));
-        let has_walls = |a: usize| self.mesh.sides()[a].spread == Spread::Cells;
         let momentum = Stage::rate(Stencil {
             term: Momentum {
                 viscosity: T::of(equation.viscosity),
@@ -63,7 +62,7 @@ impl<T: Compiled> Fields<T> {
             fields: velocity,
             out: self.rates.clone(),
             adds: false,
-            wall: (0..D).map(|a| has_walls(a).then_some(a)).collect(),
+            zero: (0..D).map(|a| equation.steady_faces(&self.mesh, a)).collect(),
             coefficients: coefficients.clone(),
         });
         let divergence = |fields| {
@@ -72,12 +71,14 @@ impl<T: Compiled> Fields<T> {
                 fields,
                 out: vec![self.pressure],
                 adds: false,
-                wall: vec![None],
+                zero: vec![None],
                 coefficients: coefficients.clone(),
             })
         };
         let of_rates = faces(|all, a| Source::Rate(all.rates[a]));
         let of_next = faces(|all, a| Source::Both(all.rates[a], all.velocity[a]));
+        // Beyond an outflow, too, it drives nothing along the end: that would give the flow energy.
+        let beyond = equation.layer_beyond(&self.mesh);
         let gradient = |adds| {
             Stage::rate(Stencil {
                 term: PressureGradient,
@@ -87,17 +88,18 @@ impl<T: Compiled> Fields<T> {
                 }],
                 out: self.rates.clone(),
                 adds,
-                wall: vec![None; D],
+                zero: (0..D).map(|a| beyond.filter(|layer| layer.axis != a)).collect(),
                 coefficients: coefficients.clone(),
             })
         };
         let correction = Correction { velocity: self.velocity.clone(), rates: self.rates.clone() };
+        // The divergence there does not count.
         let middle = Stage::rate(Stencil {
             term: InTheMiddle,
             fields: velocity,
             out: self.middle.clone(),
             adds: false,
-            wall: vec![None; D + 1],
+            zero: (0..=D).map(|i| beyond.filter(|_| i == D)).collect(),
             coefficients: coefficients.clone(),
         });
         let correction = Stage::update(correction);
@@ -129,8 +131,8 @@ impl<T: Compiled> Fields<T> {
     fn solver<U: Compiled>(&self) -> Solver<U> {
         let weights: Vec<f64> = staggered::derivative(self.order).into_iter().map(value).collect();
         let spacing = self.mesh.spacing();
-        let axis = |side: &Side| Axis::new(side.points, side.spread == Spread::Periodic);
-        Solver::new(self.mesh.sides().iter().map(axis).collect(), |a, angle| {
+        let axis = |a| Axis::new(self.mesh.shape()[a], self.equation.waves(&self.mesh, a));
+        Solver::new((0..self.dims()).map(axis).collect(), |a, angle| {
             let terms = weights.iter().zip([0.5, 1.5]);
             let derivative: f64 = terms.map(|(d, by)| 2.0 * d * (by * angle).sin()).sum();
             (derivative / spacing[a]).powi(2)

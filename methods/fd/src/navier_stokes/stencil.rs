@@ -29,6 +29,13 @@ pub(crate) struct Field<T> {
     pub beyond: [Beyond; 3],
 }
 
+/// The points with one place along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Layer {
+    pub axis: usize,
+    pub place: usize,
+}
+
 /// Computes a term `E` of `F` fields in `D` directions, with operators of order `2 K`.
 pub(crate) struct Stencil<T: Real, E, const F: usize, const D: usize, const K: usize> {
     pub term: E,
@@ -36,8 +43,8 @@ pub(crate) struct Stencil<T: Real, E, const F: usize, const D: usize, const K: u
     pub out: Vec<Rate<T>>,
     /// Whether it is added to what the columns hold.
     pub adds: bool,
-    /// For each column that is written, the axis on whose walls it has points, where it is 0.
-    pub wall: Vec<Option<usize>>,
+    /// For each column that is written, where it is 0.
+    pub zero: Vec<Option<Layer>>,
     pub coefficients: Coefficients<T, D, K>,
 }
 
@@ -132,9 +139,11 @@ impl<T: Real, E: Term<T, F, D, K>, const F: usize, const D: usize, const K: usiz
                     self.term.value::<V>(i, at).store(&mut row[x..x + V::LANES]);
                 }
                 let [y, z] = [extent.first[0] + j, extent.first[1] + k];
-                match self.wall[i] {
-                    Some(0) => row[0] = T::zero(),
-                    Some(axis) if [0, y, z][axis] == 0 => row[..nx].fill(T::zero()),
+                match self.zero[i] {
+                    Some(Layer { axis: 0, place }) => row[place] = T::zero(),
+                    Some(Layer { axis, place }) if [0, y, z][axis] == place => {
+                        row[..nx].fill(T::zero());
+                    }
                     _ => {}
                 }
                 let out = out.row(y, z);
