@@ -352,11 +352,22 @@ macro_rules! compiled {
         $(
             impl Compiled for $scalar {
                 fn navier_stokes(fields: &Fields<Self>) -> Result<Stages, FdError> {
-                    match (fields.dims(), fields.order) {
-                        (2, StaggeredOrder::Second) => fields.stages::<2, 1>(),
-                        (2, StaggeredOrder::Fourth) => fields.stages::<2, 2>(),
-                        (_, StaggeredOrder::Second) => fields.stages::<3, 1>(),
-                        (_, StaggeredOrder::Fourth) => fields.stages::<3, 2>(),
+                    let all = fields;
+                    match (all.dims(), all.order, all.has_ends()) {
+                        (2, StaggeredOrder::Second, _) => all.stages::<2, 1>(all.momentum::<2, 1>()),
+                        (2, StaggeredOrder::Fourth, false) => {
+                            all.stages::<2, 2>(all.momentum::<2, 2>())
+                        }
+                        (2, StaggeredOrder::Fourth, true) => {
+                            all.stages::<2, 1>(all.momentum_between_walls::<2>())
+                        }
+                        (_, StaggeredOrder::Second, _) => all.stages::<3, 1>(all.momentum::<3, 1>()),
+                        (_, StaggeredOrder::Fourth, false) => {
+                            all.stages::<3, 2>(all.momentum::<3, 2>())
+                        }
+                        (_, StaggeredOrder::Fourth, true) => {
+                            all.stages::<3, 1>(all.momentum_between_walls::<3>())
+                        }
                     }
                 }
 

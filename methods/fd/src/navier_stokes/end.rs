@@ -5,7 +5,6 @@ use super::patch::{Beyond, Edge, Ghost};
 use super::stencil::Layer;
 use crate::error::FdError;
 use crate::mesh::{AXES, Mesh, Spread};
-use crate::operator::staggered::StaggeredOrder;
 use crate::poisson::axis::Waves;
 
 /// What is at an end of an axis that is not periodic.
@@ -42,9 +41,6 @@ impl NavierStokes {
             match side.spread {
                 Spread::Periodic => continue,
                 Spread::Ends => return Err(FdError::Ends(axis)),
-                Spread::Cells if self.order == StaggeredOrder::Fourth => {
-                    return Err(FdError::WallOrder(axis));
-                }
                 Spread::Cells => {}
             }
             for (number, (flow_end, end)) in

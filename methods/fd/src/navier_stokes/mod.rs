@@ -6,6 +6,7 @@
 //! need integrators of its own, and the pressure of a stage would be one at no time in particular.
 
 mod around;
+mod between_walls;
 mod body;
 mod end;
 mod equation;
@@ -43,7 +44,8 @@ pub struct NavierStokes {
     pub ends: [[FlowEnd; 2]; 3],
     /// Bodies in the flow; in 2 directions, with operators of second order.
     pub bodies: Vec<Body>,
-    /// Order of the operators; the fourth in periodic boxes only.
+    /// Order of the operators. With ends only advection and diffusion are of the fourth, three points or more from them;
+    /// the whole is then of second order, but errors are smaller.
     pub order: StaggeredOrder,
     /// How time is stepped.
     pub integrator: Integrator,
@@ -79,7 +81,7 @@ impl NavierStokes {
     ///
     /// # Errors
     /// If a number is outside its valid range, the mesh is not of 2 or 3 directions or has too few points, points
-    /// lie on the ends, there are walls or bodies with operators of fourth order, a wall moves into or out of the
+    /// lie on the ends, there are bodies with operators of fourth order, a wall moves into or out of the
     /// fluid, it comes in or leaves where it cannot, a body does not fit the mesh, or the scheme is stable with no time
     /// step.
     pub fn model<T: Compiled>(

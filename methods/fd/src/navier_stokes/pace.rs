@@ -32,7 +32,7 @@ impl Limit {
         // Next to a wall, where a ghost point lies on a parabola, `u_k = (-r)^k` decays at `2 + r + 1 / r` with
         // `r^2 / 3 + 2 r = 1`.
         let at_wall = 8.0 / 3f64.sqrt();
-        let second = |a: usize| if mesh.is_periodic()[a] { second } else { at_wall };
+        let second = |a: usize| if mesh.is_periodic()[a] { second } else { at_wall.max(second) };
         let of_axis = |a: usize, rate: f64| if a < mesh.dims() { rate } else { 0.0 };
         let h = mesh.spacing();
         Self {
