@@ -173,6 +173,17 @@ fn flow_through_cylinders() {
     }
 }
 
+/// The cylinder is twenty spacings thick; the lift is a part in 500 of the drag.
+#[test]
+fn flow_past_a_cylinder_between_walls() {
+    let report = run("channel-cylinder", &[("resolution", "82")], Orders::default());
+    assert!(report.errors["drag"].abs() < 0.012, "{:?}", report.errors);
+    assert!(report.errors["pressure_difference"].abs() < 0.022, "{:?}", report.errors);
+    assert!(report.errors["lift"].abs() < 0.3, "{:?}", report.errors);
+    assert!(report.results["excess_out"].abs() < 1e-12, "{:?}", report.results);
+    assert!(report.results["divergence"] < 1e-14, "{:?}", report.results);
+}
+
 #[test]
 fn layers_of_shear_roll_up_as_they_should() {
     let report = run("double-shear-layer", &[("resolution", "64")], Orders::default());
@@ -192,6 +203,7 @@ fn a_checkpoint_is_gone_on_from_with_the_same_bits() {
         runs::assert_goes_on_with_the_same_bits("fd", "heat", &settings);
     }
     runs::assert_goes_on_with_the_same_bits("fd", "cylinder", &[("resolution", "20")]);
+    runs::assert_goes_on_with_the_same_bits("fd", "channel-cylinder", &[("resolution", "30")]);
 }
 
 #[test]
@@ -207,6 +219,7 @@ fn a_time_step_past_the_limit_is_refused_with_the_limit() {
         "cavity",
         "couette",
         "cylinder",
+        "channel-cylinder",
     ];
     for scene in scenes {
         let found = Scene::find(scene).unwrap();

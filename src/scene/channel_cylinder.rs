@@ -40,8 +40,10 @@ pub struct ChannelCylinder {
 }
 
 /// Histories of what acts on the cylinder, each sample [`ChannelCylinder::sampling`] later than the one
-/// before.
+/// before, or as much more as time steps are longer.
 pub struct Loads {
+    /// When, s.
+    pub time: Vec<f64>,
     /// Drag coefficient.
     pub drag: Vec<f64>,
     /// Lift coefficient.
@@ -58,7 +60,7 @@ impl Loads {
     pub fn new(history: &History) -> Self {
         let [drag, lift, pressure_difference] = Self::COLUMNS
             .map(|name| history.column(name).map(Iterator::collect).unwrap_or_default());
-        Self { drag, lift, pressure_difference }
+        Self { time: history.times().to_vec(), drag, lift, pressure_difference }
     }
 
     /// The means over the time that the mean flow needs for so many `diameters`, ending at each sample.
@@ -69,6 +71,7 @@ impl Loads {
             values.windows(count).map(|late| late.iter().sum::<f64>() / count as f64).collect()
         };
         Self {
+            time: self.time.iter().skip(count - 1).copied().collect(),
             drag: means(&self.drag),
             lift: means(&self.lift),
             pressure_difference: means(&self.pressure_difference),
@@ -158,11 +161,12 @@ impl ChannelCylinder {
         };
         if self.is_unsteady() {
             let late = |values: &[f64]| values[values.len() * 3 / 4..].to_vec();
-            let (drag, lift) = (late(&loads.drag), late(&loads.lift));
+            let (time, drag, lift) = (late(&loads.time), late(&loads.drag), late(&loads.lift));
             report.result("largest_drag", peak::largest(&drag).1, None);
             report.result("largest_lift", peak::largest(&lift).1, None);
-            match period(&lift) {
-                Some(samples) => report.result("strouhal", SAMPLES as f64 / samples, None),
+            let turnover = DIAMETER / self.mean_velocity();
+            match period(&time, &lift) {
+                Some(period) => report.result("strouhal", turnover / period, None),
                 None => report.notes.push("not periodic: there is no frequency".to_owned()),
             }
             return;
@@ -187,15 +191,15 @@ const DRAG: f64 = 5.57953523384;
 const LIFT: f64 = 0.010618948146;
 const PRESSURE_DIFFERENCE: f64 = 0.11752016697;
 
-/// Mean time between upward passages through the mean, in samples; `None` if there are fewer than three
+/// Mean time between upward passages through the mean, of samples at these times; `None` if there are fewer than three
 /// passages, or they are not within 5 % as far from each other.
-fn period(values: &[f64]) -> Option<f64> {
+fn period(times: &[f64], values: &[f64]) -> Option<f64> {
     let middle = 0.5 * (peak::largest(values).1 + peak::least(values).1);
     let mut passages = Vec::new();
-    for (i, pair) in values.windows(2).enumerate() {
+    for (pair, time) in values.windows(2).zip(times.windows(2)) {
         let [before, after] = [pair[0] - middle, pair[1] - middle];
         if before < 0.0 && after >= 0.0 {
-            passages.push(i as f64 - before / (after - before));
+            passages.push(time[0] - (time[1] - time[0]) * before / (after - before));
         }
     }
     let gaps: Vec<f64> = passages.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -227,7 +231,8 @@ mod tests {
             let noise = |i: u32| if i.is_multiple_of(2) { 0.5 } else { -0.5 };
             let noisy = |i: u32| 5.0 + noise(i) + drift * f64::from(i);
             let drag: Vec<f64> = (0..2000).map(noisy).collect();
-            Loads { lift: drag.clone(), pressure_difference: drag.clone(), drag }
+            let time = (0..2000).map(f64::from).collect();
+            Loads { time, lift: drag.clone(), pressure_difference: drag.clone(), drag }
         };
         assert!(!loads(0.0).are_steady(0.02));
         let averaged = loads(0.0).averaged(10.0);
@@ -237,11 +242,13 @@ mod tests {
 
     #[test]
     fn a_period_is_found_between_samples() {
-        let wave: Vec<f64> = (0..400).map(|i| 0.3 + (f64::from(i) * 0.0613).sin()).collect();
-        let found = period(&wave).unwrap();
+        // Not evenly apart.
+        let times: Vec<f64> = (0..400).map(|i| f64::from(i) + 0.3 * f64::from(i % 3)).collect();
+        let wave: Vec<f64> = times.iter().map(|time| 0.3 + (time * 0.0613).sin()).collect();
+        let found = period(&times, &wave).unwrap();
         assert!((found / (std::f64::consts::TAU / 0.0613) - 1.0).abs() < 1e-4, "{found}");
-        assert_eq!(period(&wave[..150]), None);
-        let chirp: Vec<f64> = (0..400).map(|i| (f64::from(i * i) * 0.0005).sin()).collect();
-        assert_eq!(period(&chirp), None);
+        assert_eq!(period(&times, &wave[..150]), None);
+        let chirp: Vec<f64> = times.iter().map(|time| (time * time * 0.0005).sin()).collect();
+        assert_eq!(period(&times, &chirp), None);
     }
 }

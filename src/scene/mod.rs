@@ -292,6 +292,7 @@ pub const SCENES: &[Scene] = &[
         methods: &[
             Method::lbm(lbm::channel_cylinder::parameters, lbm::channel_cylinder::prepare),
             Method::sph(sph::channel_cylinder::parameters, sph::channel_cylinder::prepare),
+            Method::fd(fd::channel_cylinder::parameters, fd::channel_cylinder::prepare),
         ],
     },
     Scene {

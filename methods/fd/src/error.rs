@@ -82,9 +82,6 @@ pub enum FdError {
          the axis must be periodic"
     )]
     Ends(char),
-    /// Walls take operators of second order.
-    #[error("order 4 needs a periodic box, and there are walls along {0}: choose order 2")]
-    WallOrder(char),
     /// A boundary condition makes no sense.
     #[error("the boundary condition at the {end} end of {axis}: {cause}")]
     Condition {

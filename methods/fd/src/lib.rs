@@ -75,7 +75,7 @@ pub use equation::{Advection, Burgers, Drift, Equation, Gas, GasEnd, GasState, H
 pub use error::FdError;
 pub use mesh::{Mesh, Side, Spread};
 pub use model::{Compiled, Fd, Parts};
-pub use navier_stokes::{Body, NavierStokes};
+pub use navier_stokes::{Body, FlowEnd, NavierStokes};
 pub use operator::Order;
 pub use operator::face::Face;
 pub use operator::staggered::StaggeredOrder;

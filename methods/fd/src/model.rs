@@ -5,7 +5,7 @@ use finegrain_framework::{
     Columns, Evolution, Handle, Integrator, Model, Pacing, Plan, Rate, Real, RigidPace, Stage,
     State, Step,
 };
-use realfft::FftNum;
+use rustdct::DctNum;
 
 use crate::around::Coefficients;
 use crate::boundary::{Boundary, Condition};
@@ -284,7 +284,7 @@ pub(crate) fn norm(side: &Side, order: Order) -> Vec<f64> {
 
 /// A scalar that kernels are compiled for: once, in this crate, and not anew in every crate that uses
 /// it, because there are many of them.
-pub trait Compiled: Real + FftNum {
+pub trait Compiled: Real + DctNum {
     /// The stages of incompressible flow.
     #[doc(hidden)]
     fn navier_stokes(fields: &Fields<Self>) -> Result<Stages, FdError>;
@@ -352,11 +352,22 @@ macro_rules! compiled {
         $(
             impl Compiled for $scalar {
                 fn navier_stokes(fields: &Fields<Self>) -> Result<Stages, FdError> {
-                    match (fields.dims(), fields.order) {
-                        (2, StaggeredOrder::Second) => fields.stages::<2, 1>(),
-                        (2, StaggeredOrder::Fourth) => fields.stages::<2, 2>(),
-                        (_, StaggeredOrder::Second) => fields.stages::<3, 1>(),
-                        (_, StaggeredOrder::Fourth) => fields.stages::<3, 2>(),
+                    let all = fields;
+                    match (all.dims(), all.order, all.has_ends()) {
+                        (2, StaggeredOrder::Second, _) => all.stages::<2, 1>(all.momentum::<2, 1>()),
+                        (2, StaggeredOrder::Fourth, false) => {
+                            all.stages::<2, 2>(all.momentum::<2, 2>())
+                        }
+                        (2, StaggeredOrder::Fourth, true) => {
+                            all.stages::<2, 1>(all.momentum_between_walls::<2>())
+                        }
+                        (_, StaggeredOrder::Second, _) => all.stages::<3, 1>(all.momentum::<3, 1>()),
+                        (_, StaggeredOrder::Fourth, false) => {
+                            all.stages::<3, 2>(all.momentum::<3, 2>())
+                        }
+                        (_, StaggeredOrder::Fourth, true) => {
+                            all.stages::<3, 1>(all.momentum_between_walls::<3>())
+                        }
                     }
                 }
 

@@ -1,8 +1,8 @@
 //! Bad input gets an error that names what and where, and never a panic.
 
 use finegrain_fd::{
-    Advection, Body, Boundary, Burgers, Condition, Drift, Face, FdError, Gas, GasEnd, GasState,
-    Heat, Implicit, Mesh, NavierStokes, Order, Side, StaggeredOrder, TimeStepping, Wave,
+    Advection, Body, Boundary, Burgers, Condition, Drift, Face, FdError, FlowEnd, Gas, GasEnd,
+    GasState, Heat, Implicit, Mesh, NavierStokes, Order, Side, StaggeredOrder, TimeStepping, Wave,
 };
 use finegrain_framework::Integrator;
 use finegrain_framework::shape::{Axis, Shape};
@@ -149,19 +149,23 @@ fn a_gas_that_is_none() {
     assert!(of(gas, air, &space).contains("directions of a gas is 3"));
 }
 
+fn flow() -> NavierStokes {
+    NavierStokes {
+        viscosity: 0.1,
+        acceleration: [0.0; 3],
+        ends: [[FlowEnd::REST; 2]; 3],
+        bodies: Vec::new(),
+        order: StaggeredOrder::Second,
+        integrator: Integrator::Rk4,
+        courant: 0.8,
+    }
+}
+
 #[test]
 fn bodies_that_do_not_fit() {
     let of = |bodies: &[(Shape, [f64; 3])], order, mesh: &Mesh| {
         let body = |&(shape, surface_velocity)| Body { shape, surface_velocity };
-        let flow = NavierStokes {
-            viscosity: 0.1,
-            acceleration: [0.0; 3],
-            wall_velocity: [[[0.0; 3]; 2]; 3],
-            bodies: bodies.iter().map(body).collect(),
-            order,
-            integrator: Integrator::Rk4,
-            courant: 0.8,
-        };
+        let flow = NavierStokes { bodies: bodies.iter().map(body).collect(), order, ..flow() };
         said(flow.model::<f64>(mesh, &|_| [0.0; 3]))
     };
     let disc = |x: f64, y: f64, radius: f64| {
@@ -180,6 +184,14 @@ fn bodies_that_do_not_fit() {
         let text = second(&[disc(0.5, y, 0.2)]);
         assert!(text.contains("body 0") && text.contains("end of y"), "{y}: {text}");
     }
+    let mut open = [[FlowEnd::REST; 2]; 3];
+    open[1] = [FlowEnd::Inflow, FlowEnd::Outflow];
+    let mesh = Mesh::new([Side::periodic(32, 0.0, 1.0), Side::cells(33, 0.0, 33.0 / 32.0)]);
+    // In the last layer of cells before the end, and well before it.
+    let body =
+        |y: f64| NavierStokes { ends: open, bodies: vec![disc(0.5, y, 0.2).0.into()], ..flow() };
+    assert!(said(body(0.79).model::<f64>(&mesh, &|_| [0.0; 3])).contains("end of y"));
+    assert!(body(0.7).model::<f64>(&mesh, &|_| [0.0; 3]).is_ok());
     let plane = Shape::HalfSpace { point: [0.0, 0.3, 0.0], outward: [0.0, 1.0, 0.0] };
     assert!(second(&[(plane, [0.0; 3])]).contains("end of y"));
     let text = second(&[disc(0.2, 0.5, 0.15), disc(0.53, 0.5, 0.15)]);
@@ -198,15 +210,7 @@ fn bodies_that_do_not_fit() {
 
 #[test]
 fn a_flow_that_is_none() {
-    let flow = NavierStokes {
-        viscosity: 0.1,
-        acceleration: [0.0; 3],
-        wall_velocity: [[[0.0; 3]; 2]; 3],
-        bodies: Vec::new(),
-        order: StaggeredOrder::Second,
-        integrator: Integrator::Rk4,
-        courant: 0.8,
-    };
+    let flow = flow();
     let of = |flow: NavierStokes, mesh: &Mesh| said(flow.model::<f64>(mesh, &|_| [0.0; 3]));
     let cavity = Mesh::new([Side::cells(16, 0.0, 1.0); 2]);
     assert!(
@@ -217,12 +221,24 @@ fn a_flow_that_is_none() {
     let acceleration = [0.0, f64::NAN, 0.0];
     let text = of(NavierStokes { acceleration, ..flow.clone() }, &cavity);
     assert!(text.contains("acceleration is NaN"), "{text}");
-    let text = of(NavierStokes { order: StaggeredOrder::Fourth, ..flow.clone() }, &cavity);
-    assert!(text.contains("order 4") && text.contains("walls along x"), "{text}");
     let mut leaking = flow.clone();
-    leaking.wall_velocity[1][0] = [1.0, 0.5, 0.0];
+    leaking.ends[1][0] = FlowEnd::Wall([1.0, 0.5, 0.0]);
     let text = of(leaking, &cavity);
     assert!(text.contains("lower end of y") && text.contains("along the wall"), "{text}");
+    for (ends, said) in [
+        ([FlowEnd::REST, FlowEnd::Inflow], "upper end of y: fluid comes in at lower ends"),
+        ([FlowEnd::Inflow, FlowEnd::REST], "lower end of y: fluid comes in at lower ends"),
+        ([FlowEnd::Outflow, FlowEnd::REST], "lower end of y: fluid leaves at one upper end only"),
+    ] {
+        let mut closed = flow.clone();
+        closed.ends[1] = ends;
+        let text = of(closed, &cavity);
+        assert!(text.contains(said), "{text}");
+    }
+    let mut twice = flow.clone();
+    twice.ends[0][1] = FlowEnd::Outflow;
+    twice.ends[1][1] = FlowEnd::Outflow;
+    assert!(of(twice, &cavity).contains("upper end of y: fluid leaves at one upper end only"));
     let text = of(NavierStokes { integrator: Integrator::Leapfrog, ..flow.clone() }, &cavity);
     assert!(text.contains("leapfrog") && text.contains("not stable"), "{text}");
     let few = Mesh::new([Side::cells(16, 0.0, 1.0), Side::periodic(3, 0.0, 1.0)]);

@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use finegrain_fd::{Body, Compiled, Fd, Mesh, NavierStokes, Parts, Side, StaggeredOrder, measure};
+use finegrain_fd::{
+    Body, Compiled, Fd, FlowEnd, Mesh, NavierStokes, Parts, Side, StaggeredOrder, measure,
+};
 use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::Grid;
 use finegrain_framework::{Integrator, Schedule, Settings, Simulation};
@@ -11,7 +13,7 @@ fn flow(body: Body) -> NavierStokes {
     NavierStokes {
         viscosity: 1.0,
         acceleration: [0.0; 3],
-        wall_velocity: [[[0.0; 3]; 2]; 3],
+        ends: [[FlowEnd::REST; 2]; 3],
         bodies: vec![body],
         order: StaggeredOrder::Second,
         // To a steady state the cheapest.

@@ -2,8 +2,8 @@
 //! restart.
 
 use finegrain_fd::{
-    Advection, Boundary, Compiled, Condition, Data, Face, Fd, Gas, GasEnd, GasState, Heat, Mesh,
-    NavierStokes, Order, Side, StaggeredOrder, Wave,
+    Advection, Boundary, Compiled, Condition, Data, Face, Fd, FlowEnd, Gas, GasEnd, GasState, Heat,
+    Mesh, NavierStokes, Order, Side, Spread, StaggeredOrder, Wave,
 };
 use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::{HandOut, Integrator, Schedule, Settings, Simulation};
@@ -58,48 +58,56 @@ fn gas<T: Compiled>() -> Fd<T> {
 }
 
 /// Flow along a duct with a moving wall, and in a periodic box.
-fn flow<T: Compiled>(order: StaggeredOrder, integrator: Integrator) -> Fd<T> {
-    let mut wall_velocity = [[[0.0; 3]; 2]; 3];
-    wall_velocity[1][1] = [1.0, 0.0, 0.5];
+fn flow<T: Compiled>(
+    order: StaggeredOrder,
+    integrator: Integrator,
+    closed: fn(usize, f64, f64) -> Side,
+) -> Fd<T> {
+    let mut ends = [[FlowEnd::REST; 2]; 3];
+    ends[1][1] = FlowEnd::Wall([1.0, 0.0, 0.5]);
     let acceleration = [0.1, 0.0, 0.0];
     let flow = NavierStokes {
         viscosity: 0.01,
         acceleration,
-        wall_velocity,
+        ends,
         bodies: Vec::new(),
         order,
         integrator,
         courant: 0.9,
-    };
-    let closed = match order {
-        StaggeredOrder::Second => Side::cells,
-        StaggeredOrder::Fourth => Side::periodic,
     };
     let mesh =
         Mesh::new([Side::periodic(37, 0.0, 1.0), closed(22, 0.0, 0.7), closed(19, 0.0, 0.5)]);
     flow.model(&mesh, &|x| [start(x), start([x[1], x[2], x[0]]), x[0].sin()]).unwrap()
 }
 
-/// Flow past a cylinder between walls.
-fn flow_past_a_body<T: Compiled>() -> Fd<T> {
-    let shape = Shape::Cylinder { axis: Axis::Z, centre: [0.95, 0.36, 0.0], radius: 0.13 };
+/// Flow past a cylinder between walls, in a ring or from an end to the other.
+fn flow_past_a_body<T: Compiled>(is_through: bool) -> Fd<T> {
+    let (mut ends, mut along) = ([[FlowEnd::REST; 2]; 3], Side::periodic(45, 0.0, 1.0));
+    let mut centre = [0.95, 0.36, 0.0];
+    if is_through {
+        (ends[0], along.spread) = ([FlowEnd::Inflow, FlowEnd::Outflow], Spread::Cells);
+        centre[0] = 0.5;
+    }
+    let shape = Shape::Cylinder { axis: Axis::Z, centre, radius: 0.13 };
     let flow = NavierStokes {
         viscosity: 0.01,
         acceleration: [0.1, 0.0, 0.0],
-        wall_velocity: [[[0.0; 3]; 2]; 3],
+        ends,
         bodies: vec![shape.into()],
         order: StaggeredOrder::Second,
         integrator: Integrator::Rk4,
         courant: 0.9,
     };
-    let mesh = Mesh::new([Side::periodic(45, 0.0, 1.0), Side::cells(36, 0.0, 0.8)]);
+    let mesh = Mesh::new([along, Side::cells(36, 0.0, 0.8)]);
     flow.model(&mesh, &|x| [start(x), start([x[1], x[0], 0.0]), 0.0]).unwrap()
 }
 
 #[test]
 fn of_flow_past_a_body() {
-    same_bits(flow_past_a_body::<f64>);
-    same_bits(flow_past_a_body::<f32>);
+    for is_through in [false, true] {
+        same_bits(|| flow_past_a_body::<f64>(is_through));
+        same_bits(|| flow_past_a_body::<f32>(is_through));
+    }
 }
 
 fn same_bits<T: Compiled>(model: impl Fn() -> Fd<T>) {
@@ -165,9 +173,10 @@ fn of_what_flows() {
     same_bits(advection::<f64>);
     same_bits(gas::<f64>);
     same_bits(gas::<f32>);
-    same_bits(|| flow::<f64>(StaggeredOrder::Second, Integrator::Rk4));
-    same_bits(|| flow::<f64>(StaggeredOrder::Fourth, Integrator::SspRk3));
-    same_bits(|| flow::<f32>(StaggeredOrder::Second, Integrator::Rk2));
+    same_bits(|| flow::<f64>(StaggeredOrder::Second, Integrator::Rk4, Side::cells));
+    same_bits(|| flow::<f64>(StaggeredOrder::Fourth, Integrator::SspRk3, Side::periodic));
+    same_bits(|| flow::<f64>(StaggeredOrder::Fourth, Integrator::Rk4, Side::cells));
+    same_bits(|| flow::<f32>(StaggeredOrder::Second, Integrator::Rk2, Side::cells));
 }
 
 /// From a checkpoint written in the middle, with fields in either set of columns.
@@ -196,5 +205,6 @@ fn after_a_restart() {
     restarts(|| wave::<f64>(Order::Sixth));
     restarts(advection::<f64>);
     restarts(gas::<f64>);
-    restarts(|| flow::<f64>(StaggeredOrder::Second, Integrator::SspRk3));
+    restarts(|| flow::<f64>(StaggeredOrder::Second, Integrator::SspRk3, Side::cells));
+    restarts(|| flow_past_a_body::<f64>(true));
 }

@@ -1,6 +1,6 @@
 //! The lid-driven cavity by finite differences.
 
-use finegrain_fd::{Compiled, Mesh, Parts, Side, StaggeredOrder};
+use finegrain_fd::{Compiled, FlowEnd, Mesh, Parts, Side};
 use finegrain_framework::Simulation;
 use finegrain_framework::run::{Every, Run, Stopped, Summary};
 use finegrain_framework::space::Grid;
@@ -13,7 +13,12 @@ use crate::scene::{Precision, Report, SceneError, cubic, peak};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
-    [&cavity::PARAMETERS[..], &[super::INTEGRATOR, super::COURANT]].concat()
+    let order = Parameter::choice(
+        "order",
+        &["2", "4"],
+        "of advection and diffusion three points or more from the walls; all else is of order 2",
+    );
+    [&cavity::PARAMETERS[..], &[order, super::INTEGRATOR, super::COURANT]].concat()
 }
 
 prepare_with!(build);
@@ -24,9 +29,9 @@ fn build<T: Compiled>(
 ) -> Result<FdScene<T, Incompressible<Cavity>>, SceneError> {
     let scene = Cavity::new(parameters);
     let mesh = Mesh::new([Side::cells(scene.resolution as usize, 0.0, 1.0); 2]);
-    let mut equation =
-        incompressible::equation(parameters, scene.viscosity(), StaggeredOrder::Second);
-    equation.wall_velocity[1][1][0] = 1.0;
+    let order = incompressible::order(parameters);
+    let mut equation = incompressible::equation(parameters, scene.viscosity(), order);
+    equation.ends[1][1] = FlowEnd::Wall([1.0, 0.0, 0.0]);
     let fd = equation.model(&mesh, &|_| [0.0; 3])?;
     let description = super::description("cavity", parameters, precision);
     Ok(FdScene { fd, flow: Incompressible(scene), description })

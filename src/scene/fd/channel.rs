@@ -1,6 +1,6 @@
 //! Couette and Poiseuille flow by finite differences: a short periodic strip between two walls.
 
-use finegrain_fd::{Compiled, Mesh, Parts, Side, StaggeredOrder};
+use finegrain_fd::{Compiled, FlowEnd, Mesh, Parts, Side, StaggeredOrder};
 use finegrain_framework::Simulation;
 use finegrain_framework::run::Summary;
 use finegrain_framework::space::Grid;
@@ -33,7 +33,7 @@ fn build<T: Compiled>(
     let mesh = Mesh::new([Side::periodic(LENGTH, 0.0, length), across]);
     let mut equation = incompressible::equation(parameters, VISCOSITY, StaggeredOrder::Second);
     equation.acceleration[0] = scene.body_acceleration();
-    equation.wall_velocity[1][1][0] = scene.plate_velocity();
+    equation.ends[1][1] = FlowEnd::Wall([scene.plate_velocity(), 0.0, 0.0]);
     let fd = equation.model(&mesh, &|_| [0.0; 3])?;
     let description = super::description(drive.scene(), parameters, precision);
     Ok(FdScene { fd, flow: Incompressible(scene), description })

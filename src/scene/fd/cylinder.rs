@@ -10,7 +10,7 @@ use super::FdScene;
 use super::incompressible::{self, Incompressible};
 use crate::scene::cylinder::{self, Cylinder, DENSITY, SIDE};
 use crate::scene::parameter::{Parameter, Parameters};
-use crate::scene::{Precision, Report, SceneError, cubic};
+use crate::scene::{Precision, Report, SceneError};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
@@ -116,28 +116,14 @@ impl incompressible::Scene for CylinderFlow {
     }
 }
 
-/// Velocity at a point, m/s, by cubics through four faces in each direction.
+/// Velocity at a point, m/s.
 fn interpolated<T: Compiled>(
     simulation: &Simulation<Grid>,
     parts: &Parts<T>,
     point: [f64; 2],
 ) -> [f64; 2] {
-    let ([nx, ny, _], spacing) = (parts.mesh.shape(), parts.mesh.spacing());
     [0, 1].map(|axis| {
         let values = simulation.columns().values(parts.unknowns[axis]);
-        let shift = |a: usize| if a == axis { 0.5 } else { 0.0 };
-        let first = parts.mesh.position([0; 3]);
-        let place = [0, 1].map(|a| (point[a] - first[a]) / spacing[a] + shift(a));
-        let [along_x, along_y] = place.map(|place| cubic::weights(place - place.floor()));
-        let at = |a: usize, by: usize, n: usize| {
-            (place[a].floor() as isize + by as isize - 1).rem_euclid(n as isize) as usize
-        };
-        let mut sum = 0.0;
-        for (dy, wy) in along_y.into_iter().enumerate() {
-            for (dx, wx) in along_x.into_iter().enumerate() {
-                sum += wx * wy * values[at(1, dy, ny) * nx + at(0, dx, nx)].as_f64();
-            }
-        }
-        sum
+        incompressible::interpolated(&parts.mesh, Some(axis), values, point)
     })
 }

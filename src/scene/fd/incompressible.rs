@@ -1,6 +1,6 @@
 //! What scenes of incompressible flow share: histories, dumps, divergence and momentum, and the picture.
 
-use finegrain_fd::{Compiled, NavierStokes, Parts, Spread, StaggeredOrder, measure};
+use finegrain_fd::{Compiled, FlowEnd, Mesh, NavierStokes, Parts, Spread, StaggeredOrder, measure};
 use finegrain_framework::run::{Dump, Every, Run, Summary};
 use finegrain_framework::shape::Shape;
 use finegrain_framework::space::Grid;
@@ -8,9 +8,9 @@ use finegrain_framework::{Rate, Simulation, Whole};
 
 use super::Flow;
 use crate::figure::{Axis, Field};
-use crate::scene::Report;
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
+use crate::scene::{Report, cubic};
 
 /// Of operators in periodic boxes.
 pub const ORDER: Parameter = Parameter::choice(
@@ -25,7 +25,7 @@ pub fn equation(parameters: &Parameters, viscosity: f64, order: StaggeredOrder) 
     NavierStokes {
         viscosity,
         acceleration: [0.0; 3],
-        wall_velocity: [[[0.0; 3]; 2]; 3],
+        ends: [[FlowEnd::REST; 2]; 3],
         bodies: Vec::new(),
         order,
         integrator: super::integrator(parameters),
@@ -159,6 +159,30 @@ pub fn velocities<'a, T: Compiled>(
     parts.mesh.positions().enumerate().map(move |(i, position)| {
         (position, [0, 1, 2].map(|a| columns.get(a).map_or(0.0, |column| column[i].as_f64())))
     })
+}
+
+/// A field in the plane at a point, by cubics through four points along each axis; of those in the middle of cells, or on
+/// the faces along an axis.
+pub fn interpolated<T: Compiled>(
+    mesh: &Mesh,
+    faces: Option<usize>,
+    values: &[T],
+    point: [f64; 2],
+) -> f64 {
+    let ([nx, ny, _], spacing, first) = (mesh.shape(), mesh.spacing(), mesh.position([0; 3]));
+    let shift = |a: usize| if faces == Some(a) { 0.5 } else { 0.0 };
+    let place = [0, 1].map(|a| (point[a] - first[a]) / spacing[a] + shift(a));
+    let [along_x, along_y] = place.map(|place| cubic::weights(place - place.floor()));
+    let at = |a: usize, by: usize, n: usize| {
+        (place[a].floor() as isize + by as isize - 1).rem_euclid(n as isize) as usize
+    };
+    let mut sum = 0.0;
+    for (dy, wy) in along_y.into_iter().enumerate() {
+        for (dx, wx) in along_x.into_iter().enumerate() {
+            sum += wx * wy * values[at(1, dy, ny) * nx + at(0, dx, nx)].as_f64();
+        }
+    }
+    sum
 }
 
 fn divergence<T: Compiled>(parts: &Parts<T>) -> Rate<T> {

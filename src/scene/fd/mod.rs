@@ -29,6 +29,7 @@ pub mod advection;
 pub mod burgers;
 pub mod cavity;
 pub mod channel;
+pub mod channel_cylinder;
 pub mod cylinder;
 pub mod double_shear_layer;
 pub mod heat;

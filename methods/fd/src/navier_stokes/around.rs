@@ -52,7 +52,17 @@ pub(crate) struct At<'a, V: Pack, const F: usize, const D: usize, const K: usize
     pub place: usize,
 }
 
-impl<V: Pack, const F: usize, const D: usize, const K: usize> At<'_, V, F, D, K> {
+impl<'a, V: Pack, const F: usize, const D: usize, const K: usize> At<'a, V, F, D, K> {
+    /// The same fields with other operators.
+    #[inline(always)]
+    pub fn with<const L: usize>(
+        self,
+        coefficients: &'a Coefficients<V::Scalar, D, L>,
+    ) -> At<'a, V, F, D, L> {
+        let Self { simd, fields, strides, place, .. } = self;
+        At { simd, fields, strides, coefficients, place }
+    }
+
     /// Field `f` so many points further along axis `a`.
     #[inline(always)]
     pub fn shifted(self, f: usize, a: usize, by: isize) -> V {

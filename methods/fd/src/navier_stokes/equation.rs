@@ -18,6 +18,18 @@ pub(crate) trait Term<T: Real, const F: usize, const D: usize, const K: usize>:
 
     /// What belongs into column `i`.
     fn value<V: Pack<Scalar = T>>(&self, i: usize, at: At<'_, V, F, D, K>) -> V;
+
+    /// The same for points that are near an end.
+    #[inline(always)]
+    fn value_near_end<V: Pack<Scalar = T>>(&self, i: usize, at: At<'_, V, F, D, K>) -> V {
+        self.value(i, at)
+    }
+
+    /// Whether a place along an axis of so many `points` is so near to an end that column `i` differs there.
+    #[inline(always)]
+    fn is_near_end(&self, _i: usize, _axis: usize, _place: usize, _points: usize) -> bool {
+        false
+    }
 }
 
 /// `-d(u_j u_i)/dx_j + nu d^2 u_i/dx_j^2 + f_i`: the rate of change of the velocity but for the pressure.

@@ -6,7 +6,9 @@
 //! need integrators of its own, and the pressure of a stage would be one at no time in particular.
 
 mod around;
+mod between_walls;
 mod body;
+mod end;
 mod equation;
 mod pace;
 mod patch;
@@ -19,30 +21,31 @@ use finegrain_framework::space::Grid;
 use finegrain_framework::{Columns, Evolution, Integrator, Model, Rate, Real, State, Step};
 
 use crate::error::{FdError, positive};
-use crate::mesh::{AXES, Mesh, Spread};
+use crate::mesh::{AXES, Mesh};
 use crate::model::{Compiled, Fd, Parts};
 use crate::operator::staggered::StaggeredOrder;
 use body::Faces;
 use pace::{FlowPace, Limit};
-use patch::{Beyond, Ghost};
 
 pub use body::Body;
 pub(crate) use body::Immersed;
+pub use end::FlowEnd;
 pub(crate) use stages::{Fields, Stages};
 
 /// Incompressible flow in 2 or 3 directions, and how it is solved: on a staggered grid of cells, each side of the mesh
-/// being periodic or, with [`Spread::Cells`], between walls.
+/// being periodic or, with [`Spread::Cells`](crate::Spread::Cells), having [`FlowEnd`]s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NavierStokes {
     /// Kinematic viscosity, m^2/s.
     pub viscosity: f64,
     /// Acceleration by a body force, m/s^2.
     pub acceleration: [f64; 3],
-    /// Velocities of the walls at the lower and upper ends of each axis, m/s; along the walls.
-    pub wall_velocity: [[[f64; 3]; 2]; 3],
+    /// What is at the lower and upper ends of each axis that is not periodic.
+    pub ends: [[FlowEnd; 2]; 3],
     /// Bodies in the flow; in 2 directions, with operators of second order.
     pub bodies: Vec<Body>,
-    /// Order of the operators; the fourth in periodic boxes only.
+    /// Order of the operators. With ends only advection and diffusion are of the fourth, three points or more from them;
+    /// the whole is then of second order, but errors are smaller.
     pub order: StaggeredOrder,
     /// How time is stepped.
     pub integrator: Integrator,
@@ -78,8 +81,9 @@ impl NavierStokes {
     ///
     /// # Errors
     /// If a number is outside its valid range, the mesh is not of 2 or 3 directions or has too few points, points
-    /// lie on the ends, there are walls or bodies with operators of fourth order, a wall moves into or out of the
-    /// fluid, a body does not fit the mesh, or the scheme is stable with no time step.
+    /// lie on the ends, there are bodies with operators of fourth order, a wall moves into or out of the
+    /// fluid, it comes in or leaves where it cannot, a body does not fit the mesh, or the scheme is stable with no time
+    /// step.
     pub fn model<T: Compiled>(
         &self,
         mesh: &Mesh,
@@ -130,7 +134,10 @@ impl NavierStokes {
             whole: Vec::new(),
             pacing: Box::new(FlowPace::new(self, mesh, &velocity)),
         };
-        let weights = [0, 1, 2].map(|a| vec![mesh.spacing()[a]; mesh.shape()[a]]);
+        let mut weights = [0, 1, 2].map(|a| vec![mesh.spacing()[a]; mesh.shape()[a]]);
+        if let Some(beyond) = self.layer_beyond(mesh) {
+            weights[beyond.axis][beyond.place] = 0.0;
+        }
         let derived = [pressure].into_iter().chain(middle).collect();
         let mesh = mesh.clone();
         Ok(Fd {
@@ -151,7 +158,7 @@ impl NavierStokes {
         if self.bodies.is_empty() {
             return Ok(None);
         }
-        let faces = Arc::new(Faces::new(mesh, &self.bodies)?);
+        let faces = Arc::new(Faces::new(mesh, &self.bodies, self.layer_beyond(mesh))?);
         let traction = ["traction_x", "traction_y"].map(|name| columns.rate(name)).to_vec();
         let (velocity, rates) = (velocity.to_vec(), rates.to_vec());
         let acceleration = self.acceleration;
@@ -181,25 +188,7 @@ impl NavierStokes {
             return Err(FdError::OutOfRange { name, value: 1.0, range });
         }
         mesh.check(|_| 2 * self.reach())?;
-        for (a, (side, axis)) in mesh.sides().iter().zip(AXES).enumerate() {
-            match side.spread {
-                Spread::Periodic => {}
-                Spread::Ends => return Err(FdError::Ends(axis)),
-                Spread::Cells if self.order == StaggeredOrder::Fourth => {
-                    return Err(FdError::WallOrder(axis));
-                }
-                Spread::Cells => {
-                    for (velocity, end) in self.wall_velocity[a].iter().zip(["lower", "upper"]) {
-                        if !velocity.iter().all(|v| v.is_finite()) || velocity[a] != 0.0 {
-                            let cause = format!(
-                                "the wall moves with {velocity:?} m/s; it must be finite and along the wall"
-                            );
-                            return Err(FdError::Condition { axis, end, cause });
-                        }
-                    }
-                }
-            }
-        }
+        self.check_ends(mesh)?;
         for (number, body) in self.bodies.iter().enumerate() {
             body.check().map_err(|cause| FdError::Body { number, cause: cause.to_string() })?;
             if mesh.dims() != 2 || self.order != StaggeredOrder::Second {
@@ -225,9 +214,9 @@ impl NavierStokes {
     ) -> Result<(), FdError> {
         const NAMES: [&str; 3] = ["velocity_x", "velocity_y", "velocity_z"];
         let (lower, below) = (mesh.sides()[a].lower, 0.5 * mesh.spacing()[a]);
-        let has_walls = mesh.sides()[a].spread == Spread::Cells;
+        let has_wall = !mesh.is_periodic()[a] && self.ends[a][0] != FlowEnd::Inflow;
         for (target, mut position) in targets.iter_mut().zip(mesh.positions()) {
-            let is_on_wall = has_walls && position[a] < lower + 1.5 * below;
+            let is_on_wall = has_wall && position[a] < lower + 1.5 * below;
             position[a] -= below;
             let value = if is_on_wall { 0.0 } else { start(position)[a] };
             if !value.is_finite() {
@@ -237,17 +226,5 @@ impl NavierStokes {
             *target = T::of(value);
         }
         Ok(())
-    }
-
-    /// What lies beyond the ends for the velocity along axis `i`, or for the pressure.
-    fn beyond(&self, mesh: &Mesh, i: Option<usize>) -> [Beyond; 3] {
-        [0, 1, 2].map(|a| match mesh.sides().get(a).map(|side| side.spread) {
-            Some(Spread::Cells) if i == Some(a) => Beyond::Walls,
-            Some(Spread::Cells) => Beyond::HalfWay([0, 1].map(|end| match i {
-                Some(i) => Ghost::with_value_at_wall(self.wall_velocity[a][end][i]),
-                None => Ghost::SAME,
-            })),
-            _ => Beyond::Periodic,
-        })
     }
 }

@@ -3,7 +3,7 @@
 use finegrain_framework::space::Grid;
 use finegrain_framework::{Fault, Integrator, Pace, Pacing, Real, State, Whole};
 
-use super::NavierStokes;
+use super::{FlowEnd, NavierStokes};
 use crate::mesh::{Mesh, Spread};
 use crate::model::Compiled;
 use crate::operator::staggered::StaggeredOrder;
@@ -32,7 +32,7 @@ impl Limit {
         // Next to a wall, where a ghost point lies on a parabola, `u_k = (-r)^k` decays at `2 + r + 1 / r` with
         // `r^2 / 3 + 2 r = 1`.
         let at_wall = 8.0 / 3f64.sqrt();
-        let second = |a: usize| if mesh.is_periodic()[a] { second } else { at_wall };
+        let second = |a: usize| if mesh.is_periodic()[a] { second } else { at_wall.max(second) };
         let of_axis = |a: usize, rate: f64| if a < mesh.dims() { rate } else { 0.0 };
         let h = mesh.spacing();
         Self {
@@ -64,10 +64,11 @@ impl<T: Real> FlowPace<T> {
     const STEPS: u64 = 5;
 
     pub fn new(equation: &NavierStokes, mesh: &Mesh, velocity: &[State<T>]) -> Self {
-        let sides = mesh.sides().iter().zip(&equation.wall_velocity);
-        let walls = sides.filter(|(side, _)| side.spread == Spread::Cells).flat_map(|(_, v)| v);
-        let wall_speeds = walls.fold([0.0f64; 3], |most, velocity| {
-            std::array::from_fn(|a| most[a].max(velocity[a].abs()))
+        let sides = mesh.sides().iter().zip(&equation.ends);
+        let ends = sides.filter(|(side, _)| side.spread == Spread::Cells).flat_map(|(_, end)| end);
+        let wall_speeds = ends.fold([0.0f64; 3], |most, end| match end {
+            FlowEnd::Wall(velocity) => std::array::from_fn(|a| most[a].max(velocity[a].abs())),
+            FlowEnd::Inflow | FlowEnd::Outflow => most,
         });
         let (courant, limit) = (equation.courant, Limit::new(equation, mesh));
         Self { courant, limit, velocity: velocity.to_vec(), wall_speeds }

@@ -9,15 +9,23 @@ use finegrain_framework::space::grid::Rows;
 pub(crate) enum Beyond {
     /// The other end.
     Periodic,
-    /// Walls, through which the field, a velocity on the faces of cells, does not go: the first point lies
-    /// on the lower wall, and one past the last on the upper.
-    Walls,
-    /// Walls half a spacing away, at the lower and upper end. Across them operators read one point; what lies
-    /// further beyond has no meaning.
-    HalfWay([Ghost; 2]),
+    /// Something else at the lower and upper end.
+    Ends([Edge; 2]),
 }
 
-/// How a point beyond an end follows from its mirror image inside: `keep` times that, plus `next` times what is
+/// What an end is to a field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Edge {
+    /// A wall, through which the field, a velocity on the faces of cells, does not go: the first point lies on the
+    /// lower wall, and one past the last on the upper.
+    Wall,
+    /// A wall half a spacing away. Across it operators read one point; what lies further beyond has no meaning.
+    HalfWay(Ghost),
+    /// The field goes on along a straight line.
+    Straight,
+}
+
+/// How a point beyond an end follows from another inside: `keep` times that, plus `next` times what is
 /// one further inside, plus `add`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ghost {
@@ -38,14 +46,18 @@ impl Ghost {
 
 impl Beyond {
     /// For point `i` outside `0..n`: the point that it follows from, if any, and how.
-    fn mirrored(&self, i: isize, n: isize) -> (Option<isize>, Ghost) {
+    fn source(&self, i: isize, n: isize) -> (Option<isize>, Ghost) {
         let same = Ghost::SAME;
-        match self {
-            Self::Periodic => (Some(i.rem_euclid(n)), same),
-            Self::Walls if i == n => (None, same),
-            Self::Walls => (Some(if i < 0 { -i } else { 2 * n - i }), same),
-            Self::HalfWay([lower, _]) if i < 0 => (Some(-1 - i), *lower),
-            Self::HalfWay([_, upper]) => (Some(2 * n - 1 - i), *upper),
+        let Self::Ends([lower, upper]) = self else { return (Some(i.rem_euclid(n)), same) };
+        let (edge, last, mirrored) = if i < 0 { (lower, 0, -i) } else { (upper, n - 1, 2 * n - i) };
+        match edge {
+            Edge::Wall if i == n => (None, same),
+            Edge::Wall => (Some(mirrored), same),
+            Edge::HalfWay(ghost) => (Some(mirrored - 1), *ghost),
+            Edge::Straight => {
+                let distance = (i - last).unsigned_abs() as f64;
+                (Some(last), Ghost { keep: 1.0 + distance, next: -distance, add: 0.0 })
+            }
         }
     }
 }
@@ -118,18 +130,18 @@ impl<T: Real> Patch<T> {
         for k in 0..planes {
             for j in 0..rows {
                 let n = extent.shape[1] as isize;
-                self.mirror(place(j, 0), n, &beyond[1], k * plane + j * row, row, row);
+                self.continue_to(place(j, 0), n, &beyond[1], k * plane + j * row, row, row);
             }
         }
         for k in 0..planes {
             let n = extent.shape[2] as isize;
-            self.mirror(place(k, 1), n, &beyond[2], k * plane, plane, plane);
+            self.continue_to(place(k, 1), n, &beyond[2], k * plane, plane, plane);
         }
     }
 
-    /// Makes what lies at `to`, of length `length`, from its mirror image if it is line `i` beyond the ends of `n`
-    /// lines `stride` apart.
-    fn mirror(
+    /// Makes what lies at `to`, of length `length`, from lines inside if it is line `i` beyond the ends of `n` lines
+    /// `stride` apart.
+    fn continue_to(
         &mut self,
         i: isize,
         n: isize,
@@ -141,7 +153,7 @@ impl<T: Real> Patch<T> {
         if (0..n).contains(&i) || *beyond == Beyond::Periodic {
             return;
         }
-        let (source, ghost) = beyond.mirrored(i, n);
+        let (source, ghost) = beyond.source(i, n);
         let Some(source) = source else { return self.0[to..to + length].fill(T::zero()) };
         let at = |line: isize| (to as isize + (line - i) * stride as isize) as usize;
         let from = at(source);
@@ -168,7 +180,7 @@ fn ends_of_row<T: Real>(row: &mut [T], extent: &Extent, beyond: &Beyond) {
     let (n, reach) = (extent.shape[0], extent.reach[0]);
     for depth in 0..reach {
         for (i, inward) in [(-1 - depth as isize, 1), ((n + depth) as isize, -1)] {
-            let (source, ghost) = beyond.mirrored(i, n as isize);
+            let (source, ghost) = beyond.source(i, n as isize);
             let at = |i: isize| (i + reach as isize) as usize;
             row[at(i)] = source.map_or(T::zero(), |source| {
                 let [keep, next, add] = [ghost.keep, ghost.next, ghost.add].map(T::of);

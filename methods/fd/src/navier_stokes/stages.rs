@@ -5,11 +5,12 @@ use finegrain_framework::{Fault, Moment, Own, Rate, Real, Stage, State, UpdateSt
 
 use super::NavierStokes;
 use super::around::Coefficients;
+use super::between_walls::BetweenWalls;
 use super::body::{Forces, Immersed, NoSlip, Still, When};
-use super::equation::{Divergence, InTheMiddle, Momentum, PressureGradient};
+use super::equation::{Divergence, InTheMiddle, Momentum, PressureGradient, Term};
 use super::stencil::{Field, Source, Stencil};
 use crate::error::FdError;
-use crate::mesh::{Mesh, Side, Spread};
+use crate::mesh::Mesh;
 use crate::model::Compiled;
 use crate::operator::staggered::{self, StaggeredOrder};
 use crate::operator::value;
@@ -43,41 +44,76 @@ impl<T: Compiled> Fields<T> {
         self.mesh.dims()
     }
 
-    /// In `D` directions with operators of order `2 K`.
-    pub(crate) fn stages<const D: usize, const K: usize>(&self) -> Result<Stages, FdError> {
-        let coefficients = Coefficients::<T, D, K>::new(self.mesh.spacing());
-        let equation = &self.equation;
-        let faces = |source: fn(&Self, usize) -> Source<T>| -> [Field<T>; D] {
-            std::array::from_fn(|a| {
-                let beyond = equation.beyond(&self.mesh, Some(a));
-                Field { source: source(self, a), beyond }
-            })
-        };
-        let velocity = faces(|all, a| Source::State(all.velocity[a]));
-        let has_walls = |a: usize| self.mesh.sides()[a].spread == Spread::Cells;
-        let momentum = Stage::rate(Stencil {
-            term: Momentum {
-                viscosity: T::of(equation.viscosity),
-                acceleration: equation.acceleration.map(T::of),
-            },
-            fields: velocity,
+    /// Whether there are walls or openings.
+    pub(crate) fn has_ends(&self) -> bool {
+        self.mesh.is_periodic().contains(&false)
+    }
+
+    /// Advection and diffusion, with operators of order `2 K`.
+    pub(crate) fn momentum<const D: usize, const K: usize>(&self) -> Stage<Grid> {
+        self.momentum_by::<D, K, _>(self.momentum_term())
+    }
+
+    /// The same of fourth order, next to walls of second.
+    pub(crate) fn momentum_between_walls<const D: usize>(&self) -> Stage<Grid> {
+        self.momentum_by::<D, 2, _>(BetweenWalls {
+            momentum: self.momentum_term(),
+            coefficients: Coefficients::new(self.mesh.spacing()),
+            walls: self.mesh.is_periodic().map(|is_periodic| !is_periodic),
+        })
+    }
+
+    fn momentum_term(&self) -> Momentum<T> {
+        Momentum {
+            viscosity: T::of(self.equation.viscosity),
+            acceleration: self.equation.acceleration.map(T::of),
+        }
+    }
+
+    fn momentum_by<const D: usize, const K: usize, E: Term<T, D, D, K>>(
+        &self,
+        term: E,
+    ) -> Stage<Grid> {
+        Stage::rate(Stencil {
+            term,
+            fields: self.faces(|all, a| Source::State(all.velocity[a])),
             out: self.rates.clone(),
             adds: false,
-            wall: (0..D).map(|a| has_walls(a).then_some(a)).collect(),
-            coefficients: coefficients.clone(),
-        });
+            zero: (0..D).map(|a| self.equation.steady_faces(&self.mesh, a)).collect(),
+            coefficients: Coefficients::<T, D, K>::new(self.mesh.spacing()),
+        })
+    }
+
+    /// What lies on the faces along each of `D` axes.
+    fn faces<const D: usize>(&self, source: fn(&Self, usize) -> Source<T>) -> [Field<T>; D] {
+        std::array::from_fn(|a| {
+            let beyond = self.equation.beyond(&self.mesh, Some(a));
+            Field { source: source(self, a), beyond }
+        })
+    }
+
+    /// In `D` directions, with operators of order `2 K` for what the pressure keeps.
+    pub(crate) fn stages<const D: usize, const K: usize>(
+        &self,
+        momentum: Stage<Grid>,
+    ) -> Result<Stages, FdError> {
+        let coefficients = Coefficients::<T, D, K>::new(self.mesh.spacing());
+        let equation = &self.equation;
+        let velocity = self.faces(|all, a| Source::State(all.velocity[a]));
         let divergence = |fields| {
             Stage::rate(Stencil {
                 term: Divergence,
                 fields,
                 out: vec![self.pressure],
                 adds: false,
-                wall: vec![None],
+                zero: vec![None],
                 coefficients: coefficients.clone(),
             })
         };
-        let of_rates = faces(|all, a| Source::Rate(all.rates[a]));
-        let of_next = faces(|all, a| Source::Both(all.rates[a], all.velocity[a]));
+        let of_rates = self.faces(|all, a| Source::Rate(all.rates[a]));
+        let of_next = self.faces(|all, a| Source::Both(all.rates[a], all.velocity[a]));
+        // Beyond an outflow, too, it drives nothing along the end: that would give the flow energy.
+        let beyond = equation.layer_beyond(&self.mesh);
         let gradient = |adds| {
             Stage::rate(Stencil {
                 term: PressureGradient,
@@ -87,17 +123,18 @@ impl<T: Compiled> Fields<T> {
                 }],
                 out: self.rates.clone(),
                 adds,
-                wall: vec![None; D],
+                zero: (0..D).map(|a| beyond.filter(|layer| layer.axis != a)).collect(),
                 coefficients: coefficients.clone(),
             })
         };
         let correction = Correction { velocity: self.velocity.clone(), rates: self.rates.clone() };
+        // The divergence there does not count.
         let middle = Stage::rate(Stencil {
             term: InTheMiddle,
             fields: velocity,
             out: self.middle.clone(),
             adds: false,
-            wall: vec![None; D + 1],
+            zero: (0..=D).map(|i| beyond.filter(|_| i == D)).collect(),
             coefficients: coefficients.clone(),
         });
         let correction = Stage::update(correction);
@@ -127,10 +164,11 @@ impl<T: Compiled> Fields<T> {
 
     /// Of `divergence(gradient(p)) = q`.
     fn solver<U: Compiled>(&self) -> Solver<U> {
-        let weights: Vec<f64> = staggered::derivative(self.order).into_iter().map(value).collect();
+        let order = if self.has_ends() { StaggeredOrder::Second } else { self.order };
+        let weights: Vec<f64> = staggered::derivative(order).into_iter().map(value).collect();
         let spacing = self.mesh.spacing();
-        let axis = |side: &Side| Axis::new(side.points, side.spread == Spread::Periodic);
-        Solver::new(self.mesh.sides().iter().map(axis).collect(), |a, angle| {
+        let axis = |a| Axis::new(self.mesh.shape()[a], self.equation.waves(&self.mesh, a));
+        Solver::new((0..self.dims()).map(axis).collect(), |a, angle| {
             let terms = weights.iter().zip([0.5, 1.5]);
             let derivative: f64 = terms.map(|(d, by)| 2.0 * d * (by * angle).sin()).sum();
             (derivative / spacing[a]).powi(2)

@@ -1,6 +1,6 @@
 //! The stage that computes a term on the rows of a tile.
 
-use finegrain_framework::pack::Pack;
+use finegrain_framework::pack::{MOST_LANES, Pack};
 use finegrain_framework::space::Grid;
 use finegrain_framework::space::grid::RowsMut;
 use finegrain_framework::{
@@ -29,6 +29,13 @@ pub(crate) struct Field<T> {
     pub beyond: [Beyond; 3],
 }
 
+/// The points with one place along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Layer {
+    pub axis: usize,
+    pub place: usize,
+}
+
 /// Computes a term `E` of `F` fields in `D` directions, with operators of order `2 K`.
 pub(crate) struct Stencil<T: Real, E, const F: usize, const D: usize, const K: usize> {
     pub term: E,
@@ -36,8 +43,8 @@ pub(crate) struct Stencil<T: Real, E, const F: usize, const D: usize, const K: u
     pub out: Vec<Rate<T>>,
     /// Whether it is added to what the columns hold.
     pub adds: bool,
-    /// For each column that is written, the axis on whose walls it has points, where it is 0.
-    pub wall: Vec<Option<usize>>,
+    /// For each column that is written, where it is 0.
+    pub zero: Vec<Option<Layer>>,
     pub coefficients: Coefficients<T, D, K>,
 }
 
@@ -117,24 +124,43 @@ impl<T: Real, E: Term<T, F, D, K>, const F: usize, const D: usize, const K: usiz
     #[inline(always)]
     fn run<V: Pack<Scalar = T>>(&self, simd: V::Simd, i: usize, work: Work<'_, '_, T, F>) {
         let Work { extent, fields, row, out } = work;
-        let nx = extent.shape[0];
+        let [nx, ny, nz] = extent.shape;
+        let mut near_end = [T::zero(); MOST_LANES];
         for k in 0..extent.count[1] {
             for j in 0..extent.count[0] {
                 let place = extent.place(j, k);
-                for x in (0..nx).step_by(V::LANES) {
-                    let at = At {
-                        simd,
-                        fields: &fields,
-                        strides: extent.strides(),
-                        coefficients: &self.coefficients,
-                        place: place + x,
-                    };
-                    self.term.value::<V>(i, at).store(&mut row[x..x + V::LANES]);
-                }
                 let [y, z] = [extent.first[0] + j, extent.first[1] + k];
-                match self.wall[i] {
-                    Some(0) => row[0] = T::zero(),
-                    Some(axis) if [0, y, z][axis] == 0 => row[..nx].fill(T::zero()),
+                let row_start = At {
+                    simd,
+                    fields: &fields,
+                    strides: extent.strides(),
+                    coefficients: &self.coefficients,
+                    place,
+                };
+                let is_near_end =
+                    self.term.is_near_end(i, 1, y, ny) || self.term.is_near_end(i, 2, z, nz);
+                for x in (0..nx).step_by(V::LANES) {
+                    let at = At { place: place + x, ..row_start };
+                    let value = if is_near_end {
+                        self.term.value_near_end::<V>(i, at)
+                    } else {
+                        self.term.value::<V>(i, at)
+                    };
+                    value.store(&mut row[x..x + V::LANES]);
+                }
+                for x in 0..nx {
+                    if !is_near_end && self.term.is_near_end(i, 0, x, nx) {
+                        let first = x - x % V::LANES;
+                        let at = At { place: place + first, ..row_start };
+                        self.term.value_near_end::<V>(i, at).store(&mut near_end);
+                        row[x] = near_end[x - first];
+                    }
+                }
+                match self.zero[i] {
+                    Some(Layer { axis: 0, place }) => row[place] = T::zero(),
+                    Some(Layer { axis, place }) if [0, y, z][axis] == place => {
+                        row[..nx].fill(T::zero());
+                    }
                     _ => {}
                 }
                 let out = out.row(y, z);

@@ -5,16 +5,38 @@ use std::sync::Arc;
 
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, FftNum, RealFftPlanner, RealToComplex};
+use rustdct::{DctNum, DctPlanner, TransformType4};
 
-/// The transform of a row into waves and back, in place: of a periodic axis into cosines and sines, of one
-/// between walls, in the middle of cells, into cosines (the discrete cosine transform of type II, by a
-/// Fourier transform of the same length; Makhoul 1980, IEEE Trans. Acoust. Speech Signal Process. 28).
+/// What holds at the ends of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Waves {
+    /// Each is the other.
+    Periodic,
+    /// Points are in the middle of cells, and at both ends half a spacing away the derivative vanishes.
+    Closed,
+    /// The same at the lower end; the last point is half a spacing beyond the place where the solution vanishes.
+    Open,
+}
+
+/// The transform of a row into waves and back, in place: of a periodic axis into cosines and sines; of a closed one
+/// into cosines (the discrete cosine transform of type II, by a Fourier transform of the same length; Makhoul 1980,
+/// IEEE Trans. Acoust. Speech Signal Process. 28); of an open one into cosines of an odd number of quarters of a wave
+/// (type IV), the last point being minus the one before.
 pub(crate) struct Axis<T: FftNum> {
+    transform: Transform<T>,
+    points: usize,
+}
+
+enum Transform<T: FftNum> {
+    Periodic(Fourier<T>),
+    /// With `exp(-i pi k / (2 n))`.
+    Closed(Fourier<T>, Vec<Complex<T>>),
+    Open(Arc<dyn TransformType4<T>>),
+}
+
+struct Fourier<T: FftNum> {
     forward: Arc<dyn RealToComplex<T>>,
     back: Arc<dyn ComplexToReal<T>>,
-    /// Between walls: `exp(-i pi k / (2 n))`.
-    turns: Option<Vec<Complex<T>>>,
-    points: usize,
 }
 
 /// Working memory of one worker.
@@ -30,19 +52,20 @@ impl<T> Default for Scratch<T> {
     }
 }
 
-impl<T: FftNum> Axis<T> {
-    pub fn new(points: usize, is_periodic: bool) -> Self {
-        let mut planner = RealFftPlanner::new();
+impl<T: DctNum> Axis<T> {
+    pub fn new(points: usize, waves: Waves) -> Self {
         let turn = |k: usize| {
             let angle = -PI * k as f64 / (2 * points) as f64;
             Complex::new(of(angle.cos()), of(angle.sin()))
         };
-        Self {
-            forward: planner.plan_fft_forward(points),
-            back: planner.plan_fft_inverse(points),
-            turns: (!is_periodic).then(|| (0..=points / 2).map(turn).collect()),
-            points,
-        }
+        let transform = match waves {
+            Waves::Periodic => Transform::Periodic(Fourier::new(points)),
+            Waves::Closed => {
+                Transform::Closed(Fourier::new(points), (0..=points / 2).map(turn).collect())
+            }
+            Waves::Open => Transform::Open(DctPlanner::new().plan_dct4(points - 1)),
+        };
+        Self { transform, points }
     }
 
     /// Number of points.
@@ -50,86 +73,126 @@ impl<T: FftNum> Axis<T> {
         self.points
     }
 
-    /// The angle per spacing, radians, of the wave in each place of a transformed row.
+    /// The angle per spacing, radians, of the wave in each place of a transformed row; the last place of an open
+    /// axis has none, and any will do.
     pub fn angles(&self) -> Vec<f64> {
         let n = self.points as f64;
-        let angle = |place: usize| match self.turns {
-            None => 2.0 * PI * place.div_ceil(2) as f64 / n,
-            Some(_) => PI * place as f64 / n,
+        let angle = |place: usize| match self.transform {
+            Transform::Periodic(_) => 2.0 * PI * place.div_ceil(2) as f64 / n,
+            Transform::Closed(..) => PI * place as f64 / n,
+            Transform::Open(_) => PI * (place as f64 + 0.5) / (n - 1.0),
         };
         (0..self.points).map(angle).collect()
     }
 
+    /// By how much a row is larger that comes back.
+    pub fn gain(&self) -> f64 {
+        match self.transform {
+            Transform::Periodic(_) | Transform::Closed(..) => self.points as f64,
+            Transform::Open(_) => 0.5 * (self.points - 1) as f64,
+        }
+    }
+
     /// Makes waves of a row.
     pub fn forward(&self, row: &mut [T], scratch: &mut Scratch<T>) {
-        let Scratch { row: copy, waves, inside } = self.fitting(scratch);
         let n = self.points;
-        if let Some(turns) = &self.turns {
-            for (k, &u) in row.iter().enumerate() {
-                copy[shuffled(k, n)] = u;
-            }
-            self.transform(copy, waves, inside);
-            for (k, (wave, turn)) in waves.iter().zip(turns).enumerate() {
-                let turned = wave * turn;
-                row[k] = turned.re;
-                if k > 0 {
-                    row[n - k] = -turned.im;
+        match &self.transform {
+            Transform::Periodic(fourier) => {
+                let Scratch { waves, inside, .. } = fourier.fitting(scratch, n);
+                fourier.forward(row, waves, inside);
+                row[0] = waves[0].re;
+                for (pair, wave) in row[1..].chunks_mut(2).zip(&waves[1..]) {
+                    pair[0] = wave.re;
+                    if let [_, im] = pair {
+                        *im = wave.im;
+                    }
                 }
             }
-        } else {
-            self.transform(row, waves, inside);
-            row[0] = waves[0].re;
-            for (pair, wave) in row[1..].chunks_mut(2).zip(&waves[1..]) {
-                pair[0] = wave.re;
-                if let [_, im] = pair {
-                    *im = wave.im;
+            Transform::Closed(fourier, turns) => {
+                let Scratch { row: copy, waves, inside } = fourier.fitting(scratch, n);
+                for (k, &u) in row.iter().enumerate() {
+                    copy[shuffled(k, n)] = u;
                 }
+                fourier.forward(copy, waves, inside);
+                for (k, (wave, turn)) in waves.iter().zip(turns).enumerate() {
+                    let turned = wave * turn;
+                    row[k] = turned.re;
+                    if k > 0 {
+                        row[n - k] = -turned.im;
+                    }
+                }
+            }
+            Transform::Open(quarter_waves) => {
+                open(quarter_waves.as_ref(), &mut row[..n - 1], scratch);
+                row[n - 1] = T::zero();
             }
         }
     }
 
-    /// Makes a row of waves, but for a factor of [`Axis::points`].
+    /// Makes a row of waves, but for a factor of [`Axis::gain`].
     pub fn back(&self, row: &mut [T], scratch: &mut Scratch<T>) {
-        let Scratch { row: copy, waves, inside } = self.fitting(scratch);
         let n = self.points;
         // Waves that are their own mirror image are real.
         let is_real = |k: usize| k == 0 || 2 * k == n;
-        if let Some(turns) = &self.turns {
-            for (k, (wave, turn)) in waves.iter_mut().zip(turns).enumerate() {
-                let sine = if k > 0 { row[n - k] } else { T::zero() };
-                *wave = Complex::new(row[k], -sine) * turn.conj();
-                if is_real(k) {
-                    wave.im = T::zero();
+        match &self.transform {
+            Transform::Periodic(fourier) => {
+                let Scratch { waves, inside, .. } = fourier.fitting(scratch, n);
+                waves[0] = Complex::new(row[0], T::zero());
+                for (pair, wave) in row[1..].chunks(2).zip(&mut waves[1..]) {
+                    *wave = Complex::new(pair[0], pair.get(1).copied().unwrap_or_else(T::zero));
+                }
+                fourier.back(waves, row, inside);
+            }
+            Transform::Closed(fourier, turns) => {
+                let Scratch { row: copy, waves, inside } = fourier.fitting(scratch, n);
+                for (k, (wave, turn)) in waves.iter_mut().zip(turns).enumerate() {
+                    let sine = if k > 0 { row[n - k] } else { T::zero() };
+                    *wave = Complex::new(row[k], -sine) * turn.conj();
+                    if is_real(k) {
+                        wave.im = T::zero();
+                    }
+                }
+                fourier.back(waves, copy, inside);
+                for (k, u) in row.iter_mut().enumerate() {
+                    *u = copy[shuffled(k, n)];
                 }
             }
-            self.transform_back(waves, copy, inside);
-            for (k, u) in row.iter_mut().enumerate() {
-                *u = copy[shuffled(k, n)];
+            Transform::Open(quarter_waves) => {
+                open(quarter_waves.as_ref(), &mut row[..n - 1], scratch);
+                row[n - 1] = -row[n - 2];
             }
-        } else {
-            waves[0] = Complex::new(row[0], T::zero());
-            for (pair, wave) in row[1..].chunks(2).zip(&mut waves[1..]) {
-                *wave = Complex::new(pair[0], pair.get(1).copied().unwrap_or_else(T::zero));
-            }
-            self.transform_back(waves, row, inside);
         }
     }
+}
 
-    fn fitting<'s>(&self, scratch: &'s mut Scratch<T>) -> &'s mut Scratch<T> {
+/// Quarter waves there and, the same, back.
+fn open<T: DctNum>(waves: &dyn TransformType4<T>, row: &mut [T], scratch: &mut Scratch<T>) {
+    let inside = &mut scratch.row;
+    inside.resize(waves.get_scratch_len().max(inside.len()), T::zero());
+    waves.process_dct4_with_scratch(row, inside);
+}
+
+impl<T: FftNum> Fourier<T> {
+    fn new(points: usize) -> Self {
+        let mut planner = RealFftPlanner::new();
+        Self { forward: planner.plan_fft_forward(points), back: planner.plan_fft_inverse(points) }
+    }
+
+    fn fitting<'s>(&self, scratch: &'s mut Scratch<T>, points: usize) -> &'s mut Scratch<T> {
         let zero = Complex::new(T::zero(), T::zero());
-        scratch.row.resize(self.points, T::zero());
-        scratch.waves.resize(self.points / 2 + 1, zero);
+        scratch.row.resize(points, T::zero());
+        scratch.waves.resize(points / 2 + 1, zero);
         let inside = self.forward.get_scratch_len().max(self.back.get_scratch_len());
         scratch.inside.resize(inside.max(scratch.inside.len()), zero);
         scratch
     }
 
-    fn transform(&self, row: &mut [T], waves: &mut [Complex<T>], inside: &mut [Complex<T>]) {
+    fn forward(&self, row: &mut [T], waves: &mut [Complex<T>], inside: &mut [Complex<T>]) {
         let done = self.forward.process_with_scratch(row, waves, inside);
         done.expect("all have the lengths that were planned for");
     }
 
-    fn transform_back(&self, waves: &mut [Complex<T>], row: &mut [T], inside: &mut [Complex<T>]) {
+    fn back(&self, waves: &mut [Complex<T>], row: &mut [T], inside: &mut [Complex<T>]) {
         let done = self.back.process_with_scratch(waves, row, inside);
         done.expect("all have the lengths that were planned for, and real waves are real");
     }
@@ -153,25 +216,33 @@ mod tests {
     #[test]
     fn waves_are_what_they_should_be() {
         for n in [4, 7, 8, 9, 30] {
-            let row: Vec<f64> = (0..n).map(|i| (1.3 * i as f64).sin() + 0.2 * i as f64).collect();
-            for is_periodic in [true, false] {
-                let axis = Axis::new(n, is_periodic);
+            let mut row: Vec<f64> =
+                (0..n).map(|i| (1.3 * i as f64).sin() + 0.2 * i as f64).collect();
+            for kind in [Waves::Periodic, Waves::Closed, Waves::Open] {
+                let transformed = if kind == Waves::Open { n - 1 } else { n };
+                if kind == Waves::Open {
+                    row[n - 1] = -row[n - 2];
+                }
+                let axis = Axis::new(n, kind);
                 let mut scratch = Scratch::default();
                 let mut waves = row.clone();
                 axis.forward(&mut waves, &mut scratch);
-                for (place, (&found, &angle)) in waves.iter().zip(&axis.angles()).enumerate() {
-                    let is_sine = is_periodic && place > 0 && place % 2 == 0;
-                    let shift = if is_periodic { 0.0 } else { 0.5 };
+                for (place, (&found, &angle)) in
+                    waves.iter().zip(&axis.angles()).enumerate().take(transformed)
+                {
+                    let is_sine = kind == Waves::Periodic && place > 0 && place % 2 == 0;
+                    let shift = if kind == Waves::Periodic { 0.0 } else { 0.5 };
                     let wave = |i: usize| match is_sine {
                         true => -(angle * i as f64).sin(),
                         false => (angle * (i as f64 + shift)).cos(),
                     };
-                    let sum: f64 = row.iter().enumerate().map(|(i, u)| u * wave(i)).sum();
+                    let terms = row[..transformed].iter().enumerate();
+                    let sum: f64 = terms.map(|(i, u)| u * wave(i)).sum();
                     assert!((found - sum).abs() < 1e-12 * n as f64, "{n} {place}: {found} {sum}");
                 }
                 axis.back(&mut waves, &mut scratch);
                 for (back, u) in waves.iter().zip(&row) {
-                    assert!((back / n as f64 - u).abs() < 1e-13, "{n}: {back} {u}");
+                    assert!((back / axis.gain() - u).abs() < 1e-13, "{kind:?} {n}: {back} {u}");
                 }
             }
         }

@@ -1,7 +1,8 @@
 //! Poisson's equation on a box, solved directly: fast diagonalisation, one axis after the other.
 //!
 //! Along an axis that is periodic or lies between walls, waves are the eigenvectors of the difference operators,
-//! whatever their order (Lynch, Rice & Thomas 1964; Schumann & Sweet 1988, J. Comput. Phys. 75). With the
+//! whatever their order (Lynch, Rice & Thomas 1964; Schumann & Sweet 1988, J. Comput. Phys. 75), and so they are, of
+//! second order, where the solution vanishes at the upper end. With the
 //! eigenvalues of the *discrete* operator the discrete equation is solved to round-off, in `O(N log N)`.
 //! Every row is transformed by one worker, so that the bits do not depend on how many there are.
 
@@ -17,7 +18,8 @@ use axis::{Axis, Scratch};
 const BLOCK: usize = 16;
 
 /// Solves `-sum_a lambda_a p = q`: one eigenvalue for each wave of each axis, none below zero. Where all vanish, for
-/// the mean, the solution is taken to have none.
+/// the mean, the solution is taken to have none. Beyond the place at the end of an open axis where it vanishes, the
+/// right-hand side does not count, and the solution is the odd continuation.
 pub(crate) struct Solver<T: Compiled> {
     axes: Vec<Axis<T>>,
     eigenvalues: Vec<Vec<f64>>,
@@ -41,7 +43,7 @@ impl<T: Compiled> Solver<T> {
     pub fn solve(&mut self, team: &mut Team, values: &mut [T]) {
         let Self { axes, eigenvalues, turned, scratch } = self;
         scratch.resize_with(team.workers().max(scratch.len()), Scratch::default);
-        let scale = 1.0 / values.len() as f64;
+        let scale = 1.0 / axes.iter().map(Axis::gain).product::<f64>();
         let inverse = |sum: f64| T::of(if sum > 0.0 { -scale / sum } else { 0.0 });
         let [nx, ny] = [axes[0].points(), axes[1].points()];
         team.for_each_chunk_with(scratch, values, BLOCK * nx, |scratch, _, rows| {
@@ -125,21 +127,25 @@ impl<T: Compiled> WholeStage<Grid> for Poisson<T> {
 
 #[cfg(test)]
 mod tests {
+    use super::axis::Waves::{self, Closed, Open, Periodic};
     use super::*;
 
-    /// Applies the operator of second order that the eigenvalues below are of.
-    fn apply(shape: [usize; 3], periodic: [bool; 3], p: &[f64]) -> Vec<f64> {
+    /// Applies the operator of second order that the eigenvalues below are of; beyond an open axis it is 0.
+    fn apply(shape: [usize; 3], ends: [Waves; 3], p: &[f64]) -> Vec<f64> {
         let at = |x: [usize; 3]| p[(x[2] * shape[1] + x[1]) * shape[0] + x[0]];
         let value = |n: usize| {
-            let x = [n % shape[0], n / shape[0] % shape[1], n / (shape[0] * shape[1])];
+            let x = point(shape, n);
             let mut sum = 0.0;
             for a in 0..3 {
+                if ends[a] == Open && x[a] + 1 == shape[a] {
+                    return 0.0;
+                }
                 for by in [-1, 1] {
                     let moved = x[a] as isize + by;
                     let inside = (0..shape[a] as isize).contains(&moved);
                     let mut y = x;
                     y[a] = moved.rem_euclid(shape[a] as isize) as usize;
-                    if inside || periodic[a] {
+                    if inside || ends[a] == Periodic {
                         sum += (at(y) - at(x)) * (a + 1) as f64;
                     }
                 }
@@ -149,27 +155,42 @@ mod tests {
         (0..p.len()).map(value).collect()
     }
 
+    fn point(shape: [usize; 3], n: usize) -> [usize; 3] {
+        [n % shape[0], n / shape[0] % shape[1], n / (shape[0] * shape[1])]
+    }
+
     #[test]
     fn the_discrete_equation_is_solved_to_round_off_with_the_same_bits() {
-        for (shape, periodic) in [
-            ([12, 9, 1], [true, true, true]),
-            ([33, 20, 1], [false, false, true]),
-            ([16, 37, 1], [true, false, true]),
-            ([20, 18, 24], [true, false, true]),
-            ([17, 6, 5], [false, true, false]),
+        for (shape, ends) in [
+            ([12, 9, 1], [Periodic, Periodic, Periodic]),
+            ([33, 20, 1], [Closed, Closed, Periodic]),
+            ([16, 37, 1], [Periodic, Closed, Periodic]),
+            ([41, 18, 1], [Open, Closed, Periodic]),
+            ([24, 30, 1], [Periodic, Open, Periodic]),
+            ([20, 18, 24], [Periodic, Closed, Periodic]),
+            ([17, 6, 5], [Closed, Periodic, Closed]),
+            ([21, 16, 8], [Open, Closed, Periodic]),
+            ([10, 8, 17], [Closed, Periodic, Open]),
         ] {
             let dims = if shape[2] == 1 { 2 } else { 3 };
             let solver = || {
-                let axes = (0..dims).map(|a| Axis::new(shape[a], periodic[a])).collect();
+                let axes = (0..dims).map(|a| Axis::new(shape[a], ends[a])).collect();
                 Solver::<f64>::new(axes, |a, angle| {
                     (2.0 * (0.5 * angle).sin()).powi(2) * (a + 1) as f64
                 })
             };
             let points = shape.iter().product::<usize>();
             let mut wanted: Vec<f64> = (0..points).map(|i| (0.9 * i as f64).sin()).collect();
-            let mean = wanted.iter().sum::<f64>() / points as f64;
-            wanted.iter_mut().for_each(|p| *p -= mean);
-            let source = apply(shape, periodic, &wanted);
+            if let Some(a) = ends.iter().position(|&ends| ends == Open) {
+                let stride: usize = shape[..a].iter().product();
+                for n in (0..points).filter(|&n| point(shape, n)[a] + 1 == shape[a]) {
+                    wanted[n] = -wanted[n - stride];
+                }
+            } else {
+                let mean = wanted.iter().sum::<f64>() / points as f64;
+                wanted.iter_mut().for_each(|p| *p -= mean);
+            }
+            let source = apply(shape, ends, &wanted);
             let solved = |workers| {
                 let mut values = source.clone();
                 solver().solve(&mut Team::new(workers).unwrap(), &mut values);

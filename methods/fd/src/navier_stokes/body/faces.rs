@@ -2,6 +2,7 @@
 
 use finegrain_framework::shape::Shape;
 
+use super::super::stencil::Layer;
 use super::Body;
 use crate::error::FdError;
 use crate::mesh::{AXES, Mesh, Spread};
@@ -56,8 +57,9 @@ struct Nearest {
 
 impl Faces {
     /// # Errors
-    /// If a body lies over an end of the mesh, is too thin for it, or a gap is too narrow.
-    pub fn new(mesh: &Mesh, bodies: &[Body]) -> Result<Self, FdError> {
+    /// If a body lies over an end of the mesh or the layer of cells `beyond` one, is too thin for it, or a gap is too
+    /// narrow.
+    pub fn new(mesh: &Mesh, bodies: &[Body], beyond: Option<Layer>) -> Result<Self, FdError> {
         let mut faces = Self {
             mesh: mesh.clone(),
             inside: vec![Vec::new(); bodies.len()],
@@ -81,7 +83,7 @@ impl Faces {
                 let share = (0.5 - distance / mesh.spacing()[axis]).clamp(0.0, 1.0);
                 faces.excess[body][axis] += (f64::from(distance <= 0.0) - share) * mesh.cell();
                 if distance <= 0.0 {
-                    faces.refuse_ends(face, body)?;
+                    faces.refuse_ends(face, body, beyond)?;
                     faces.inside[body].push(face);
                 }
             }
@@ -209,10 +211,11 @@ impl Faces {
     }
 
     /// Refuses a body with a face in the first or last layer of cells along an axis with ends.
-    fn refuse_ends(&self, face: Face, number: usize) -> Result<(), FdError> {
+    fn refuse_ends(&self, face: Face, number: usize, beyond: Option<Layer>) -> Result<(), FdError> {
         for (a, side) in self.mesh.sides().iter().enumerate() {
             let i = self.point(face.cell)[a];
-            if side.spread != Spread::Periodic && (i == 0 || i + 1 == side.points) {
+            let last = side.points - 1 - usize::from(beyond.is_some_and(|layer| layer.axis == a));
+            if side.spread != Spread::Periodic && (i == 0 || i >= last) {
                 return Err(FdError::BodyAtEnd { number, axis: AXES[a] });
             }
         }
