@@ -23,8 +23,8 @@ struct Arguments {
 enum Command {
     /// Run a scene: a built-in one by name, or a TOML file.
     Run(cli::run::RunArguments),
-    /// List the built-in scenes with their parameters.
-    Scenes,
+    /// List the built-in scenes, or one with its parameters.
+    Scenes(cli::scenes::ScenesArguments),
     /// Measure speed, speed-up and efficiency.
     #[command(subcommand)]
     Bench(cli::bench::BenchCommand),
@@ -37,7 +37,9 @@ fn main() -> ExitCode {
     let command = Arguments::parse().command;
     let outcome = match command {
         Some(Command::Run(arguments)) => cli::run::run(arguments),
-        Some(Command::Scenes) => cli::scenes::list(&mut std::io::stdout().lock()),
+        Some(Command::Scenes(arguments)) => {
+            cli::scenes::scenes(&arguments, &mut std::io::stdout().lock())
+        }
         Some(Command::Bench(command)) => cli::bench::bench(command),
         Some(Command::Report(command)) => cli::report::report(command),
         None => cli::bench::bench(cli::bench::BenchCommand::default()),

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use finegrain::scene::SCENES;
 use serde_json::Value;
 
 fn finegrain(arguments: &[&str], folder: &Path) -> Output {
@@ -39,11 +40,20 @@ fn small<'a>(more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn scenes_are_listed_with_their_parameters() {
     let folder = tempfile::tempdir().unwrap();
-    let output = finegrain(&["scenes"], folder.path());
-    let text = String::from_utf8_lossy(&output.stdout);
-    for word in ["cylinder", "taylor-green", "solid_fraction", "between 0.001 and 0.5"] {
-        assert!(text.contains(word), "{word} in {text}");
+    let said = |arguments: &[&str]| {
+        let output = finegrain(arguments, folder.path());
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let all = said(&["scenes"]);
+    for scene in SCENES {
+        assert!(all.lines().any(|line| line.starts_with(scene.name)), "{} in {all}", scene.name);
     }
+    let cylinder = said(&["scenes", "cylinder"]);
+    for word in ["--method lbm", "solid_fraction", "between 0.001 and 0.5"] {
+        assert!(cylinder.contains(word), "{word} in {cylinder}");
+    }
+    assert!(!finegrain(&["scenes", "cylindre"], folder.path()).status.success());
 }
 
 #[test]

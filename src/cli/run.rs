@@ -49,7 +49,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "SECONDS", value_parser = duration, allow_negative_numbers = true)]
     wall_clock: Option<Duration>,
     /// Folder for dumps, histories, checkpoints and the picture of the final field; files of an
-    /// earlier run in it are overwritten.
+    /// earlier run in it are overwritten where they have the same names, and stay where not.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Dump fields for ParaView every so many steps (needs --out); ten times in a run by default. The
@@ -129,7 +129,15 @@ A scene file is TOML; all but the scene's name may be left out:
     kernel = \"quintic-spline\"
 
 What the command line says goes over it. Exit code: 0 when the run ended in order (Ctrl-C
-included), 1 after an error, 2 for wrong arguments, 130 after a second Ctrl-C.";
+included), 1 after an error (an unknown scene or parameter, a value out of its range, and whatever ends
+a run too early), 2 for options that do not exist or cannot be read, 130 after a second Ctrl-C.";
+
+/// The checkpoint with the largest number in a folder.
+fn last_checkpoint(folder: &Path) -> Option<String> {
+    let files = std::fs::read_dir(folder).ok()?.filter_map(Result::ok);
+    let names = files.filter_map(|file| file.file_name().into_string().ok());
+    names.filter(|name| name.starts_with("checkpoint-") && name.ends_with(".ckpt")).max()
+}
 
 /// Runs a scene and says what it came to.
 pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
@@ -176,6 +184,14 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
             std::process::exit(130);
         }
     })?;
+    if let (Some(out), None) = (&arguments.out, &arguments.restart)
+        && let Some(name) = last_checkpoint(out)
+    {
+        eprintln!(
+            "note: {} holds checkpoints of an earlier run, the last is {name}",
+            out.display()
+        );
+    }
     let bar = std::io::stderr().is_terminal().then(ProgressLine::start);
     let orders = Orders {
         schedule: arguments.schedule,

@@ -2,28 +2,42 @@
 
 use std::io::Write;
 
-use finegrain::scene::SCENES;
+use clap::Args;
+use finegrain::scene::{SCENES, Scene};
 
 use super::CommandError;
 
-/// Lists all scenes with their parameters.
-pub fn list(out: &mut impl Write) -> Result<(), CommandError> {
-    for scene in SCENES {
-        writeln!(out, "{}: {}", scene.name, scene.summary)?;
-        for method in scene.methods {
-            writeln!(out, "  --method {}", method.name)?;
-            for parameter in (method.parameters)() {
-                let range = parameter.range();
-                writeln!(
-                    out,
-                    "    {:20} {:>18}  {} ({range})",
-                    parameter.name,
-                    parameter.default().to_string(),
-                    parameter.help
-                )?;
+/// Arguments of `finegrain scenes`.
+#[derive(Args)]
+pub struct ScenesArguments {
+    /// A scene, to see its parameters with their defaults and ranges; all scenes, a line each, without.
+    scene: Option<String>,
+}
+
+/// Lists all scenes, or the parameters of one.
+pub fn scenes(arguments: &ScenesArguments, out: &mut impl Write) -> Result<(), CommandError> {
+    match &arguments.scene {
+        Some(name) => describe(Scene::find(name)?, out)?,
+        None => {
+            for scene in SCENES {
+                let methods: Vec<_> = scene.methods.iter().map(|method| method.name).collect();
+                writeln!(out, "{:20} {:13} {}", scene.name, methods.join(", "), scene.summary)?;
             }
+            writeln!(out, "\nparameters of a scene: finegrain scenes NAME")?;
         }
-        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn describe(scene: &Scene, out: &mut impl Write) -> std::io::Result<()> {
+    writeln!(out, "{}: {}", scene.name, scene.summary)?;
+    for method in scene.methods {
+        writeln!(out, "\n--method {}", method.name)?;
+        for parameter in (method.parameters)() {
+            let (name, default) = (parameter.name, parameter.default().to_string());
+            writeln!(out, "  {name:20} {default:>18}  {}", parameter.help)?;
+            writeln!(out, "  {:39}  ({})", "", parameter.range())?;
+        }
     }
     Ok(())
 }

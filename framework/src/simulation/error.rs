@@ -1,9 +1,11 @@
 //! Why a run ended before its time: where, when and what.
 
+use std::fmt;
+
 use crate::leg::Cause;
 
 /// Why a run ended before its time.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[error("{method}: step {step} (t = {time:.6e}), stage {stage:?}{}: {cause}", at(*.sub_domain))]
 pub struct RunError {
     /// The method.
@@ -18,6 +20,13 @@ pub struct RunError {
     pub sub_domain: Option<usize>,
     /// Why.
     pub cause: Cause,
+}
+
+/// As it is displayed: a `main` that returns it shows this.
+impl fmt::Debug for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
 }
 
 fn at(sub_domain: Option<usize>) -> String {

@@ -17,16 +17,21 @@ impl<'a, T> Rows<'a, T> {
     /// Row j of plane k, all of x. Periodic directions wrap.
     ///
     /// # Panics
-    /// If there is no such row, or it lies beyond the stencil's reach.
+    /// If there is no such row, or it lies beyond the stencil's reach, as for [`Near::reach_row`].
     #[inline]
     pub fn row(&self, j: isize, k: isize) -> &'a [T] {
-        self.get(j, k).unwrap_or_else(|| panic!("row ({j}, {k}) lies outside the grid"))
+        self.get(j, k).unwrap_or_else(|| {
+            panic!(
+                "row ({j}, {k}) lies outside the grid, which is not periodic there: `get` tells \
+                 what lies inside"
+            )
+        })
     }
 
     /// As [`Rows::row`], but `None` past a bounded end.
     ///
     /// # Panics
-    /// If the row lies beyond the stencil's reach.
+    /// As [`Near::reach_row`].
     #[inline]
     pub fn get(&self, j: isize, k: isize) -> Option<&'a [T]> {
         Some(self.column.at(self.near.reach_row(j, k)?))
@@ -39,6 +44,21 @@ fn wrap(i: isize, n: usize, periodic: bool) -> Option<usize> {
     } else {
         periodic.then(|| i.rem_euclid(n as isize) as usize)
     }
+}
+
+/// Whether a stencil around the tile's rows reads row j of plane k.
+fn is_within_reach(tile: &Tile<'_>, j: usize, k: usize) -> bool {
+    let Grid { shape: [_, ny, nz], periodic, reach, .. } = *tile.grid;
+    let sees = |own: &Range<usize>, i: usize, n: usize, periodic: bool| {
+        if periodic {
+            // Forward from the first row, or back to it.
+            let (ahead, behind) = ((i + n - own.start) % n, (own.start + n - i) % n);
+            ahead < own.len() + reach || behind <= reach
+        } else {
+            i + reach >= own.start && i < own.end + reach
+        }
+    };
+    sees(&tile.rows, j, ny, periodic[1]) && sees(&tile.planes, k, nz, periodic[2])
 }
 
 /// A tile's own rows of one column, to be written.
@@ -137,13 +157,19 @@ impl<'a> Near<'a, Grid> {
     /// many. Periodic directions wrap; `None` past a bounded end.
     ///
     /// # Panics
-    /// If the row lies beyond the stencil's reach.
+    /// If the row lies beyond the stencil's [`reach`](super::GridBuilder::reach) from the tile: with debug
+    /// assertions always, without only if it is not a neighbour's.
     #[inline]
     pub fn reach_row(&self, j: isize, k: isize) -> Option<Reach<'a>> {
         let grid = self.domain();
         let [nx, ny, nz] = grid.shape;
         let j = wrap(j, ny, grid.periodic[1])?;
         let k = wrap(k, nz, grid.periodic[2])?;
+        debug_assert!(
+            is_within_reach(&self.sub_domain(), j, k),
+            "row ({j}, {k}) lies further from its tile than the reach of {}: see GridBuilder::reach",
+            grid.reach
+        );
         let start = (k * ny + j) * nx;
         Some(self.reach(grid.owner(j, k), Span { start, end: start + nx }))
     }
@@ -226,5 +252,28 @@ impl<'a> Own<'a, Grid> {
     pub fn rate_rows<T: Element>(&mut self, column: Rate<T>) -> OwnRows<'a, T> {
         assert!(!self.is_shifted(column.id()), "rates are owned without offset");
         OwnRows { tile: self.sub_domain(), part: self.rate(column) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Domain;
+
+    #[test]
+    fn reach_is_counted_from_the_tile_not_from_its_neighbours() {
+        let grid = Grid::builder([4, 12]).periodic([false, true]).tile(3, 1).reach(2).build();
+        let seen_from = |id| {
+            let tile = grid.sub_domain(id);
+            (0..12).filter(|&j| is_within_reach(&tile, j, 0)).collect::<Vec<_>>()
+        };
+        assert_eq!(seen_from(0), [0, 1, 2, 3, 4, 10, 11]);
+        assert_eq!(seen_from(1), [1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(seen_from(3), [0, 1, 7, 8, 9, 10, 11]);
+
+        let bounded = Grid::builder([4, 12]).tile(3, 1).build();
+        let tile = bounded.sub_domain(3);
+        let seen: Vec<_> = (0..12).filter(|&j| is_within_reach(&tile, j, 0)).collect();
+        assert_eq!(seen, [8, 9, 10, 11]);
     }
 }
