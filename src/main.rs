@@ -6,6 +6,7 @@ use std::io;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use finegrain::framework::instructions;
 
 mod cli;
 
@@ -35,7 +36,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let command = Arguments::parse().command;
-    let outcome = match command {
+    let outcome = instructions::check().map_err(Into::into).and_then(|()| match command {
         Some(Command::Run(arguments)) => cli::run::run(arguments),
         Some(Command::Scenes(arguments)) => {
             cli::scenes::scenes(&arguments, &mut std::io::stdout().lock())
@@ -43,7 +44,7 @@ fn main() -> ExitCode {
         Some(Command::Bench(command)) => cli::bench::bench(command),
         Some(Command::Report(command)) => cli::report::report(command),
         None => cli::bench::bench(cli::bench::BenchCommand::default()),
-    };
+    });
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         // Who closes our output (`| head`) has seen enough.

@@ -79,6 +79,7 @@ mod compile_fail;
 pub mod dispatch;
 mod domain;
 pub mod format;
+pub mod instructions;
 pub mod integrator;
 pub mod lanes;
 mod leg;

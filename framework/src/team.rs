@@ -100,7 +100,11 @@ impl Team {
     /// # Panics
     /// With a worker's panic, after all have returned; the team stays usable.
     pub fn run(&mut self, task: impl Fn(usize) + Sync) {
-        let task: &(dyn Fn(usize) + Sync) = &task;
+        self.run_dyn(&task);
+    }
+
+    /// [`Team::run`], compiled once and not for every task.
+    fn run_dyn(&mut self, task: &(dyn Fn(usize) + Sync)) {
         // SAFETY: only the lifetime is erased. Nobody uses the pointer after `end`, which this
         // function awaits before `task` goes away; nothing between here and there can unwind.
         let task = unsafe { std::mem::transmute::<&(dyn Fn(usize) + Sync), Task>(task) };

@@ -5,7 +5,7 @@ use finegrain_framework::{
     Columns, Evolution, Handle, Integrator, Model, Pacing, Plan, Rate, Real, RigidPace, Stage,
     State, Step,
 };
-use rustdct::DctNum;
+use realfft::FftNum;
 
 use crate::around::Coefficients;
 use crate::boundary::{Boundary, Condition};
@@ -284,7 +284,7 @@ pub(crate) fn norm(side: &Side, order: Order) -> Vec<f64> {
 
 /// A scalar that kernels are compiled for: once, in this crate, and not anew in every crate that uses
 /// it, because there are many of them.
-pub trait Compiled: Real + DctNum {
+pub trait Compiled: Real + FftNum {
     /// The stages of incompressible flow.
     #[doc(hidden)]
     fn navier_stokes(fields: &Fields<Self>) -> Result<Stages, FdError>;

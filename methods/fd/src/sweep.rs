@@ -1,5 +1,6 @@
 //! The stage that evaluates an equation on the rows of a tile.
 
+use finegrain_framework::instructions;
 use finegrain_framework::pack::Pack;
 use finegrain_framework::space::Grid;
 use finegrain_framework::space::grid::{self, RowsMut};
@@ -335,7 +336,7 @@ where
     ) -> Result<(), Fault> {
         let mut out = self.out.map(|rate| rates.rows(rate));
         let work = Work { near, out: &mut out, scratch, moment };
-        pulp::Arch::new().dispatch(Task { sweep: self, work });
+        instructions::dispatch(Task { sweep: self, work });
         Ok(())
     }
 }

@@ -2,8 +2,8 @@
 
 use std::marker::PhantomData;
 
-use finegrain_framework::Real;
 use finegrain_framework::pack::{Bypass, Fill, Pack, Targets, fill, prefetch};
+use finegrain_framework::{Real, instructions};
 
 use crate::collision::Collide;
 use crate::lattice::Lattice;
@@ -50,12 +50,12 @@ impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Collider<T, Q> for K
         bypass: Option<Bypass<'_>>,
     ) {
         let memory = Apart { from, to, bypass };
-        pulp::Arch::new().dispatch(Task { kernel: self, memory, acceleration });
+        instructions::dispatch(Task { kernel: self, memory, acceleration });
     }
 
     fn exchange(&self, slots: [&mut [T]; Q], acceleration: Varying<'_, T>) {
         let memory = InPlace { slots };
-        pulp::Arch::new().dispatch(Task { kernel: self, memory, acceleration });
+        instructions::dispatch(Task { kernel: self, memory, acceleration });
     }
 }
 

@@ -3,6 +3,7 @@
 //! A rate stage of its own: it has to iterate, since the smoothing length that the sum depends on
 //! depends on the sum.
 
+use finegrain_framework::instructions;
 use finegrain_framework::space::Cells;
 use finegrain_framework::{
     Activity, ColumnId, Domain, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, Stage,
@@ -131,7 +132,7 @@ impl<T: Real, const D: usize> Solver<T, D> {
         scratch: &mut Scratch<T, D>,
         activity: &Activity,
     ) -> Result<(), (usize, T)> {
-        pulp::Arch::new().dispatch(Task { solver: self, density, written, scratch, activity })
+        instructions::dispatch(Task { solver: self, density, written, scratch, activity })
     }
 
     #[inline(always)]

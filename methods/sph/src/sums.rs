@@ -1,7 +1,7 @@
 //! The sums of a sweep over what was gathered: nothing here knows columns, or how precise positions
 //! are, so that it is compiled once for a scalar type.
 
-use finegrain_framework::{Activity, Real};
+use finegrain_framework::{Activity, Real, instructions};
 
 use crate::gathered::Layout;
 use crate::imposed::Imposed;
@@ -49,7 +49,7 @@ impl<T: Real, const D: usize> Sums<T, D> {
         time: f64,
         activity: &Activity,
     ) {
-        pulp::Arch::new().dispatch(Task { sums: self, written, scratch, listed, time, activity });
+        instructions::dispatch(Task { sums: self, written, scratch, listed, time, activity });
     }
 
     #[inline(always)]

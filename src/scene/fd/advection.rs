@@ -24,7 +24,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Passing>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Carried::new(parameters);
     let mesh = super::in_directions(Side::periodic(scene.resolution, 0.0, 1.0), scene.dims);
     let equation = Advection {
@@ -38,7 +38,7 @@ fn build<T: Compiled>(
     let start = move |x| scene.quantity(x, 0.0);
     let fd = equation.model(&mesh, time_step, &move |_| velocity, &start)?;
     let description = super::description("advection", parameters, precision);
-    Ok(FdScene { fd, flow: Passing { scene }, description })
+    Ok(FdScene { fd, flow: Box::new(Passing { scene }), description })
 }
 
 struct Passing {

@@ -23,7 +23,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Wave>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Steepening::new(parameters);
     let mesh = Mesh::new([Side::cells(scene.resolution, -1.0, 1.0)]);
     let equation = Burgers {
@@ -36,7 +36,7 @@ fn build<T: Compiled>(
     let start = move |x: [f64; 3]| scene.start(x[0]);
     let fd = equation.model(&mesh, super::dividing(TIME, longest), &start)?;
     let description = super::description("burgers", parameters, precision);
-    Ok(FdScene { fd, flow: Wave { scene }, description })
+    Ok(FdScene { fd, flow: Box::new(Wave { scene }), description })
 }
 
 struct Wave {

@@ -26,7 +26,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Incompressible<Cavity>>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Cavity::new(parameters);
     let mesh = Mesh::new([Side::cells(scene.resolution as usize, 0.0, 1.0); 2]);
     let order = incompressible::order(parameters);
@@ -34,7 +34,7 @@ fn build<T: Compiled>(
     equation.ends[1][1] = FlowEnd::Wall([1.0, 0.0, 0.0]);
     let fd = equation.model(&mesh, &|_| [0.0; 3])?;
     let description = super::description("cavity", parameters, precision);
-    Ok(FdScene { fd, flow: Incompressible(scene), description })
+    Ok(FdScene { fd, flow: Box::new(Incompressible(scene)), description })
 }
 
 impl incompressible::Scene for Cavity {

@@ -26,7 +26,7 @@ fn build<T: Compiled>(
     drive: Drive,
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Incompressible<Channel>>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Channel::new(drive, parameters);
     let length = GAP * LENGTH as f64 / scene.resolution;
     let across = Side::cells(scene.resolution as usize, 0.0, GAP);
@@ -36,7 +36,7 @@ fn build<T: Compiled>(
     equation.ends[1][1] = FlowEnd::Wall([scene.plate_velocity(), 0.0, 0.0]);
     let fd = equation.model(&mesh, &|_| [0.0; 3])?;
     let description = super::description(drive.scene(), parameters, precision);
-    Ok(FdScene { fd, flow: Incompressible(scene), description })
+    Ok(FdScene { fd, flow: Box::new(Incompressible(scene)), description })
 }
 
 impl incompressible::Scene for Channel {

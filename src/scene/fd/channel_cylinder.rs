@@ -36,7 +36,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Incompressible<CylinderFlow>>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = ChannelCylinder::new(parameters);
     let cells = (LENGTH * scene.resolution / HEIGHT).round();
     let along = Side::cells(cells as usize + 1, 0.0, LENGTH * (cells + 1.0) / cells);
@@ -46,7 +46,7 @@ fn build<T: Compiled>(
     equation.bodies = vec![scene.body().into()];
     let fd = equation.model(&mesh, &|x| scene.inflow(x))?;
     let description = super::description("channel-cylinder", parameters, precision);
-    Ok(FdScene { fd, flow: Incompressible(CylinderFlow(scene)), description })
+    Ok(FdScene { fd, flow: Box::new(Incompressible(CylinderFlow(scene))), description })
 }
 
 /// Steady loads change by less than this part.

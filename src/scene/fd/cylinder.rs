@@ -31,7 +31,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Incompressible<CylinderFlow>>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Cylinder::new(parameters);
     let mesh = Mesh::new([Side::periodic(scene.resolution as usize, 0.0, SIDE); 2]);
     let mut equation =
@@ -42,7 +42,11 @@ fn build<T: Compiled>(
     let description = super::description("cylinder", parameters, precision);
     // Steps in which the mean flow is compared: what rounding leaves must not count.
     let tolerance = 1e-7f64.max(100.0 * T::epsilon().as_f64());
-    Ok(FdScene { fd, flow: Incompressible(CylinderFlow { scene, tolerance }), description })
+    Ok(FdScene {
+        fd,
+        flow: Box::new(Incompressible(CylinderFlow { scene, tolerance })),
+        description,
+    })
 }
 
 struct CylinderFlow {

@@ -22,14 +22,14 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Incompressible<DoubleShearLayer>>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = DoubleShearLayer::new(parameters);
     let mesh = Mesh::new([Side::periodic(scene.resolution as usize, 0.0, 1.0); 2]);
     let order = incompressible::order(parameters);
     let equation = incompressible::equation(parameters, scene.viscosity(), order);
     let fd = equation.model(&mesh, &|x| scene.velocity(x))?;
     let description = super::description("double-shear-layer", parameters, precision);
-    Ok(FdScene { fd, flow: Incompressible(scene), description })
+    Ok(FdScene { fd, flow: Box::new(Incompressible(scene)), description })
 }
 
 impl incompressible::Scene for DoubleShearLayer {

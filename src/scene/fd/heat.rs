@@ -37,7 +37,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Spreading>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = HeatBox::new(parameters)?;
     let (mesh, boundary) = match scene.heating {
         Heating::Wave(ends) | Heating::Step(ends) => {
@@ -63,7 +63,7 @@ fn build<T: Compiled>(
     let start = move |x| scene.temperature(x, 0.0);
     let fd = equation.model(&mesh, super::dividing(TIME, longest), &start)?;
     let description = super::description("heat", parameters, precision);
-    Ok(FdScene { fd, flow: Spreading { scene }, description })
+    Ok(FdScene { fd, flow: Box::new(Spreading { scene }), description })
 }
 
 struct Spreading {

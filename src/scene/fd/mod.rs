@@ -146,14 +146,14 @@ trait Flow<T: Compiled> {
 }
 
 /// A scene with its model.
-struct FdScene<T: Compiled, F> {
+struct FdScene<T: Compiled> {
     fd: Fd<T>,
-    flow: F,
+    flow: Box<dyn Flow<T>>,
     /// What is modelled, for checkpoints.
     description: String,
 }
 
-impl<T: Compiled, F: Flow<T>> Prepared for FdScene<T, F> {
+impl<T: Compiled> Prepared for FdScene<T> {
     fn points(&self) -> usize {
         self.fd.parts.mesh.points()
     }

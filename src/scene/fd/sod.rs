@@ -25,7 +25,7 @@ const ROWS: usize = 8;
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Tube>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Sod::new(parameters);
     let points = 2 * scene.resolution as usize;
     let along = Side::periodic(points, DIAPHRAGM - 1.0, DIAPHRAGM + 1.0);
@@ -43,7 +43,7 @@ fn build<T: Compiled>(
     };
     let fd = equation.model(&mesh, &|x| gas::state(TUBE.around(x[0] - DIAPHRAGM, 0.0)))?;
     let description = super::description("sod", parameters, precision);
-    Ok(FdScene { fd, flow: Tube { scene }, description })
+    Ok(FdScene { fd, flow: Box::new(Tube { scene }), description })
 }
 
 struct Tube {

@@ -22,7 +22,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Incompressible<TaylorGreen>>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = TaylorGreen::new(parameters);
     let side = Side::periodic(scene.resolution as usize, 0.0, 1.0);
     let mesh = super::in_directions(side, scene.dims);
@@ -30,7 +30,7 @@ fn build<T: Compiled>(
     let equation = incompressible::equation(parameters, 1.0 / scene.reynolds, order);
     let fd = equation.model(&mesh, &|x| scene.velocity(x, 0.0))?;
     let description = super::description("taylor-green", parameters, precision);
-    Ok(FdScene { fd, flow: Incompressible(scene), description })
+    Ok(FdScene { fd, flow: Box::new(Incompressible(scene)), description })
 }
 
 impl incompressible::Scene for TaylorGreen {

@@ -22,7 +22,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Tube>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Toro::new(parameters);
     let mesh = Mesh::new([Side::cells(scene.resolution, 0.0, 1.0)]);
     let equation = Gas {
@@ -32,7 +32,7 @@ fn build<T: Compiled>(
     };
     let fd = equation.model(&mesh, &|x| gas::state(scene.exact(x[0], 0.0)))?;
     let description = super::description("toro", parameters, precision);
-    Ok(FdScene { fd, flow: Tube { scene }, description })
+    Ok(FdScene { fd, flow: Box::new(Tube { scene }), description })
 }
 
 struct Tube {

@@ -23,7 +23,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Swinging>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = StandingWaves::new(parameters);
     let (mesh, boundary) = super::unit_box(scene.dims, scene.resolution, scene.ends);
     let equation = Wave { speed: SPEED, order: super::order(parameters), boundary };
@@ -31,7 +31,7 @@ fn build<T: Compiled>(
     let time_step = super::dividing(TIME, longest);
     let fd = equation.model(&mesh, time_step, &move |x| scene.start(x), &|_| 0.0)?;
     let description = super::description("wave", parameters, precision);
-    Ok(FdScene { fd, flow: Swinging { scene, time_step }, description })
+    Ok(FdScene { fd, flow: Box::new(Swinging { scene, time_step }), description })
 }
 
 struct Swinging {

@@ -23,7 +23,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<FdScene<T, Turning>, SceneError> {
+) -> Result<FdScene<T>, SceneError> {
     let scene = Zalesak::new(parameters);
     let mesh = Mesh::new([Side::cells(scene.resolution, 0.0, 1.0); 2]);
     let equation = Advection {
@@ -37,7 +37,7 @@ fn build<T: Compiled>(
     let (velocity, disk) = (move |x| scene.velocity(x), move |x| scene.disk(x));
     let fd = equation.model(&mesh, time_step, &velocity, &disk)?;
     let description = super::description("zalesak", parameters, precision);
-    Ok(FdScene { fd, flow: Turning { scene }, description })
+    Ok(FdScene { fd, flow: Box::new(Turning { scene }), description })
 }
 
 struct Turning {

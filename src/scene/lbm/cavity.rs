@@ -25,7 +25,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, CavityFlow>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = Cavity::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let n = scene.resolution as usize;

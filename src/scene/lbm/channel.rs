@@ -30,7 +30,7 @@ fn build<T: Compiled>(
     drive: Drive,
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, ChannelFlow>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = Channel::new(drive, parameters);
     let spacing = GAP / scene.resolution;
     let relaxation_time = parameters.number("relaxation_time");

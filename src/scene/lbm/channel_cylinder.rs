@@ -42,7 +42,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, CylinderFlow>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = ChannelCylinder::new(parameters);
     let spacing = HEIGHT / scene.resolution;
     let length = (LENGTH / spacing).round() as usize + 2;

@@ -23,7 +23,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, CylinderFlow>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = Cylinder::new(parameters);
     let spacing = SIDE / scene.resolution;
     let n = scene.resolution as usize;

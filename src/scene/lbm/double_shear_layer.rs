@@ -23,7 +23,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, Layers>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = DoubleShearLayer::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let n = scene.resolution as usize;

@@ -218,29 +218,29 @@ impl<T: Compiled> Final<T> {
 }
 
 /// A scene with its model.
-struct LbmScene<T: Compiled, F> {
+struct LbmScene<T: Compiled> {
     lbm: Lbm<T>,
     fluid: Fluid,
-    flow: F,
+    flow: Box<dyn Flow<T>>,
     /// What is modelled, for checkpoints.
     description: String,
 }
 
 /// Builds a scene's model.
-fn scene<T: Compiled, F>(
-    flow: F,
+fn scene<T: Compiled>(
+    flow: impl Flow<T> + 'static,
     mesh: &Mesh,
     fluid: Fluid,
     physics: &Physics,
     scheme: &Scheme,
     start: &Start,
     description: String,
-) -> Result<LbmScene<T, F>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let lbm = Lbm::new(mesh, &fluid, physics, scheme, start)?;
-    Ok(LbmScene { lbm, fluid, flow, description })
+    Ok(LbmScene { lbm, fluid, flow: Box::new(flow), description })
 }
 
-impl<T: Compiled, F: Flow<T>> Prepared for LbmScene<T, F> {
+impl<T: Compiled> Prepared for LbmScene<T> {
     fn points(&self) -> usize {
         self.lbm.mesh.sites()
     }

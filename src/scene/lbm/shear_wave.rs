@@ -24,7 +24,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, Wave>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = ShearWave::new(parameters);
     let dims = parameters.number("dim") as usize;
     let spacing = 1.0 / scene.resolution;

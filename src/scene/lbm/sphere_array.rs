@@ -24,7 +24,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, SphereFlow>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = SphereArray::new(parameters);
     let spacing = SIDE / scene.resolution;
     let relaxation_time = parameters.number("relaxation_time");

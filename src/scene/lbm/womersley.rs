@@ -28,7 +28,7 @@ prepare_with!(build);
 fn build<T: Compiled>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<LbmScene<T, ToAndFro>, SceneError> {
+) -> Result<LbmScene<T>, SceneError> {
     let scene = Womersley::new(parameters);
     let spacing = GAP / scene.resolution;
     let relaxation_time = parameters.number("relaxation_time");

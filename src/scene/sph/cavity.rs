@@ -39,7 +39,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, CavityFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = Cavity::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let thickness = LAYERS * spacing;
@@ -76,7 +76,7 @@ fn build<T: Real, P: Real>(
     };
     let sph = Sph::new(&start, &fluid, &physics, &super::scheme_with_walls(parameters))?;
     let description = super::description("cavity", parameters, precision);
-    Ok(SphScene { sph, flow: CavityFlow { scene }, description })
+    Ok(SphScene { sph, flow: Box::new(CavityFlow { scene }), description })
 }
 
 struct CavityFlow {

@@ -71,7 +71,7 @@ fn build<T: Real, P: Real>(
     drive: Drive,
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, ChannelFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = Channel::new(drive, parameters);
     let spacing = GAP / scene.resolution;
     let thickness = LAYERS * spacing;
@@ -109,7 +109,7 @@ fn build<T: Real, P: Real>(
     };
     let sph = Sph::new(&start, &fluid, &physics, &super::scheme_with_walls(parameters))?;
     let description = super::description(drive.scene(), parameters, precision);
-    Ok(SphScene { sph, flow: ChannelFlow { scene }, description })
+    Ok(SphScene { sph, flow: Box::new(ChannelFlow { scene }), description })
 }
 
 struct ChannelFlow {

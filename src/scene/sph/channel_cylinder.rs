@@ -44,7 +44,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, CylinderFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = ChannelCylinder::new(parameters);
     let spacing = HEIGHT / scene.resolution;
     let thickness = LAYERS * spacing;
@@ -86,7 +86,7 @@ fn build<T: Real, P: Real>(
     };
     let sph = Sph::new(&start, &fluid, &physics, &super::scheme_with_walls(parameters))?;
     let description = super::description("channel-cylinder", parameters, precision);
-    Ok(SphScene { sph, flow: CylinderFlow { scene, spacing }, description })
+    Ok(SphScene { sph, flow: Box::new(CylinderFlow { scene, spacing }), description })
 }
 
 struct CylinderFlow {

@@ -45,7 +45,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, CylinderFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = Cylinder::new(parameters);
     let spacing = SIDE / scene.resolution;
     let packing = match (parameters.choice("packing"), scene.dims) {
@@ -86,7 +86,7 @@ fn build<T: Real, P: Real>(
     let volume = lengths[..scene.dims].iter().product();
     let flow = CylinderFlow { scene, volume, sides: [lengths[0], lengths[1]] };
     let description = super::description("cylinder", parameters, precision);
-    Ok(SphScene { sph, flow, description })
+    Ok(SphScene { sph, flow: Box::new(flow), description })
 }
 
 /// Particles at rest on a whole lattice.

@@ -34,7 +34,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, DamFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let mut scene = DamBreak::new(parameters);
     let spacing = WIDTH / scene.resolution;
     scene.tank = tank::fit(scene.tank, spacing);
@@ -49,7 +49,7 @@ fn build<T: Real, P: Real>(
         if is_water { DENSITY * scene.pressure([x, y, z]) } else { 0.0 }
     });
     let description = super::description("dam-break", parameters, precision);
-    Ok(SphScene { sph, flow: DamFlow { scene, fluid }, description })
+    Ok(SphScene { sph, flow: Box::new(DamFlow { scene, fluid }), description })
 }
 
 struct DamFlow {

@@ -69,7 +69,7 @@ fn build<T: Real, P: Real>(
     drop: Drop,
     parameters: &Parameters,
     description: String,
-) -> Result<SphScene<T, P, DropFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let spacing = drop.radius / drop.resolution;
     // The centre is between four particles.
     let half = drop.resolution as i32;
@@ -105,7 +105,7 @@ fn build<T: Real, P: Real>(
     let scheme = free_surface::scheme(parameters, speed);
     let mut sph = Sph::<T, P>::new(&start, &fluid, &physics, &scheme)?;
     free_surface::set_pressure(&mut sph, &fluid, &start.positions, |x| drop.pressure(x));
-    Ok(SphScene { sph, flow: DropFlow { drop, fluid }, description })
+    Ok(SphScene { sph, flow: Box::new(DropFlow { drop, fluid }), description })
 }
 
 struct DropFlow {

@@ -28,7 +28,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, TankFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let mut scene = HydrostaticTank::new(parameters);
     let spacing = DEPTH / scene.resolution;
     scene.tank = tank::fit(scene.tank, spacing);
@@ -40,7 +40,7 @@ fn build<T: Real, P: Real>(
     let mut sph = Sph::<T, P>::new(&start, &fluid, &tank::physics(&scene.tank), &scheme)?;
     free_surface::set_pressure(&mut sph, &fluid, &positions, |x| scene.pressure(x[1].min(DEPTH)));
     let description = super::description("hydrostatic-tank", parameters, precision);
-    Ok(SphScene { sph, flow: TankFlow { scene, fluid }, description })
+    Ok(SphScene { sph, flow: Box::new(TankFlow { scene, fluid }), description })
 }
 
 struct TankFlow {

@@ -296,14 +296,14 @@ trait Flow<T: Real, P: Real> {
 }
 
 /// A scene with its SPH model.
-struct SphScene<T: Real, P: Real, F> {
+struct SphScene<T: Real, P: Real> {
     sph: Sph<T, P>,
-    flow: F,
+    flow: Box<dyn Flow<T, P>>,
     /// What is modelled, for checkpoints.
     description: String,
 }
 
-impl<T: Real, P: Real, F: Flow<T, P>> Prepared for SphScene<T, P, F> {
+impl<T: Real, P: Real> Prepared for SphScene<T, P> {
     fn points(&self) -> usize {
         self.sph.model.columns.points()
     }

@@ -27,7 +27,7 @@ const EXTENT: f64 = TIME + 0.5;
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, Implosion>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = Noh::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let (positions, particle_volume) = if scene.dims == 1 {
@@ -62,7 +62,7 @@ fn build<T: Real, P: Real>(
     let longest = 2.2 * spacing;
     let sph = gas::build(parameters, &start, HEAT_RATIO, longest, &densities, &energies)?;
     let description = super::description("noh", parameters, precision);
-    Ok(SphScene { sph, flow: Implosion { scene, spacing }, description })
+    Ok(SphScene { sph, flow: Box::new(Implosion { scene, spacing }), description })
 }
 
 struct Implosion {

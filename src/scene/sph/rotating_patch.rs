@@ -31,7 +31,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, PatchFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = RotatingPatch::new(parameters);
     let spacing = SIDE / scene.resolution;
     let lattice = Packing::Square.fit([SIDE; 3], spacing)?;
@@ -60,7 +60,7 @@ fn build<T: Real, P: Real>(
     let mut sph = Sph::<T, P>::new(&start, &fluid, &Physics::default(), &scheme)?;
     free_surface::set_pressure(&mut sph, &fluid, &start.positions, |x| scene.pressure(x));
     let description = super::description("rotating-patch", parameters, precision);
-    Ok(SphScene { sph, flow: PatchFlow { scene, fluid }, description })
+    Ok(SphScene { sph, flow: Box::new(PatchFlow { scene, fluid }), description })
 }
 
 struct PatchFlow {

@@ -38,7 +38,7 @@ fn sides(scene: &Sod) -> [[f64; 2]; 2] {
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, Tube>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = Sod::new(parameters);
     let sides = sides(&scene);
     let [[spacing, _], [thinnest, _]] = sides;
@@ -73,7 +73,7 @@ fn build<T: Real, P: Real>(
     let longest = 1.15 * thinnest.max(8f64.sqrt() * spacing);
     let sph = gas::build(parameters, &start, TUBE.heat_ratio, longest, &densities, &energies)?;
     let description = super::description("sod", parameters, precision);
-    Ok(SphScene { sph, flow: Tube { scene, spacing }, description })
+    Ok(SphScene { sph, flow: Box::new(Tube { scene, spacing }), description })
 }
 
 struct Tube {

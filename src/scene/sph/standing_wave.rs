@@ -28,7 +28,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, WaveFlow>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let mut scene = StandingWave::new(parameters);
     let spacing = DEPTH / scene.resolution;
     scene.tank = tank::fit(scene.tank, spacing);
@@ -45,7 +45,7 @@ fn build<T: Real, P: Real>(
         scene.pressure([x, y.min(DEPTH), z])
     });
     let description = super::description("standing-wave", parameters, precision);
-    Ok(SphScene { sph, flow: WaveFlow { scene, fluid }, description })
+    Ok(SphScene { sph, flow: Box::new(WaveFlow { scene, fluid }), description })
 }
 
 struct WaveFlow {

@@ -46,7 +46,7 @@ prepare_with!(build);
 fn build<T: Real, P: Real>(
     parameters: &Parameters,
     precision: Precision,
-) -> Result<SphScene<T, P, Vortices>, SceneError> {
+) -> Result<SphScene<T, P>, SceneError> {
     let scene = TaylorGreen::new(parameters);
     let spacing = 1.0 / scene.resolution;
     let packing = if scene.dims == 2 { Packing::Square } else { Packing::Cubic };
@@ -79,7 +79,7 @@ fn build<T: Real, P: Real>(
         }
     }
     let description = super::description("taylor-green", parameters, precision);
-    Ok(SphScene { sph, flow: Vortices { scene }, description })
+    Ok(SphScene { sph, flow: Box::new(Vortices { scene }), description })
 }
 
 struct Vortices {

@@ -1,5 +1,6 @@
 //! The stage that computes a term on the rows of a tile.
 
+use finegrain_framework::instructions;
 use finegrain_framework::pack::{MOST_LANES, Pack};
 use finegrain_framework::space::Grid;
 use finegrain_framework::space::grid::RowsMut;
@@ -99,7 +100,7 @@ impl<T: Real, E: Term<T, F, D, K>, const F: usize, const D: usize, const K: usiz
             let mut out = rates.rows(self.out[i]);
             let fields = std::array::from_fn(|f| patches[f].values());
             let work = Work { extent, fields, row, out: &mut out };
-            pulp::Arch::new().dispatch(Task { stencil: self, i, work });
+            instructions::dispatch(Task { stencil: self, i, work });
         }
         Ok(())
     }

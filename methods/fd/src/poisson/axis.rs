@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, FftNum, RealFftPlanner, RealToComplex};
-use rustdct::{DctNum, DctPlanner, TransformType4};
 
 /// What holds at the ends of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +20,8 @@ pub(crate) enum Waves {
 /// The transform of a row into waves and back, in place: of a periodic axis into cosines and sines; of a closed one
 /// into cosines (the discrete cosine transform of type II, by a Fourier transform of the same length; Makhoul 1980,
 /// IEEE Trans. Acoust. Speech Signal Process. 28); of an open one into cosines of an odd number of quarters of a wave
-/// (type IV), the last point being minus the one before.
+/// (type IV), the last point being minus the one before. These are every other wave of a closed row twice as long,
+/// in which the row and minus its mirror image follow each other.
 pub(crate) struct Axis<T: FftNum> {
     transform: Transform<T>,
     points: usize,
@@ -29,18 +29,14 @@ pub(crate) struct Axis<T: FftNum> {
 
 enum Transform<T: FftNum> {
     Periodic(Fourier<T>),
-    /// With `exp(-i pi k / (2 n))`.
-    Closed(Fourier<T>, Vec<Complex<T>>),
-    Open(Arc<dyn TransformType4<T>>),
-}
-
-struct Fourier<T: FftNum> {
-    forward: Arc<dyn RealToComplex<T>>,
-    back: Arc<dyn ComplexToReal<T>>,
+    Closed(Cosines<T>),
+    /// Of the row that is twice as long.
+    Open(Cosines<T>),
 }
 
 /// Working memory of one worker.
 pub(crate) struct Scratch<T> {
+    twice: Vec<T>,
     row: Vec<T>,
     waves: Vec<Complex<T>>,
     inside: Vec<Complex<T>>,
@@ -48,22 +44,16 @@ pub(crate) struct Scratch<T> {
 
 impl<T> Default for Scratch<T> {
     fn default() -> Self {
-        Self { row: Vec::new(), waves: Vec::new(), inside: Vec::new() }
+        Self { twice: Vec::new(), row: Vec::new(), waves: Vec::new(), inside: Vec::new() }
     }
 }
 
-impl<T: DctNum> Axis<T> {
+impl<T: FftNum> Axis<T> {
     pub fn new(points: usize, waves: Waves) -> Self {
-        let turn = |k: usize| {
-            let angle = -PI * k as f64 / (2 * points) as f64;
-            Complex::new(of(angle.cos()), of(angle.sin()))
-        };
         let transform = match waves {
             Waves::Periodic => Transform::Periodic(Fourier::new(points)),
-            Waves::Closed => {
-                Transform::Closed(Fourier::new(points), (0..=points / 2).map(turn).collect())
-            }
-            Waves::Open => Transform::Open(DctPlanner::new().plan_dct4(points - 1)),
+            Waves::Closed => Transform::Closed(Cosines::new(points)),
+            Waves::Open => Transform::Open(Cosines::new(2 * (points - 1))),
         };
         Self { transform, points }
     }
@@ -79,7 +69,7 @@ impl<T: DctNum> Axis<T> {
         let n = self.points as f64;
         let angle = |place: usize| match self.transform {
             Transform::Periodic(_) => 2.0 * PI * place.div_ceil(2) as f64 / n,
-            Transform::Closed(..) => PI * place as f64 / n,
+            Transform::Closed(_) => PI * place as f64 / n,
             Transform::Open(_) => PI * (place as f64 + 0.5) / (n - 1.0),
         };
         (0..self.points).map(angle).collect()
@@ -88,17 +78,16 @@ impl<T: DctNum> Axis<T> {
     /// By how much a row is larger that comes back.
     pub fn gain(&self) -> f64 {
         match self.transform {
-            Transform::Periodic(_) | Transform::Closed(..) => self.points as f64,
+            Transform::Periodic(_) | Transform::Closed(_) => self.points as f64,
             Transform::Open(_) => 0.5 * (self.points - 1) as f64,
         }
     }
 
     /// Makes waves of a row.
     pub fn forward(&self, row: &mut [T], scratch: &mut Scratch<T>) {
-        let n = self.points;
         match &self.transform {
             Transform::Periodic(fourier) => {
-                let Scratch { waves, inside, .. } = fourier.fitting(scratch, n);
+                let Scratch { waves, inside, .. } = fourier.fitting(scratch, row.len());
                 fourier.forward(row, waves, inside);
                 row[0] = waves[0].re;
                 for (pair, wave) in row[1..].chunks_mut(2).zip(&waves[1..]) {
@@ -108,68 +97,105 @@ impl<T: DctNum> Axis<T> {
                     }
                 }
             }
-            Transform::Closed(fourier, turns) => {
-                let Scratch { row: copy, waves, inside } = fourier.fitting(scratch, n);
-                for (k, &u) in row.iter().enumerate() {
-                    copy[shuffled(k, n)] = u;
-                }
-                fourier.forward(copy, waves, inside);
-                for (k, (wave, turn)) in waves.iter().zip(turns).enumerate() {
-                    let turned = wave * turn;
-                    row[k] = turned.re;
-                    if k > 0 {
-                        row[n - k] = -turned.im;
-                    }
-                }
-            }
-            Transform::Open(quarter_waves) => {
-                open(quarter_waves.as_ref(), &mut row[..n - 1], scratch);
-                row[n - 1] = T::zero();
+            Transform::Closed(cosines) => cosines.forward(row, scratch),
+            Transform::Open(cosines) => {
+                let [row @ .., last] = row else { return };
+                quarter_waves(cosines, row, scratch);
+                *last = T::zero();
             }
         }
     }
 
     /// Makes a row of waves, but for a factor of [`Axis::gain`].
     pub fn back(&self, row: &mut [T], scratch: &mut Scratch<T>) {
-        let n = self.points;
-        // Waves that are their own mirror image are real.
-        let is_real = |k: usize| k == 0 || 2 * k == n;
         match &self.transform {
             Transform::Periodic(fourier) => {
-                let Scratch { waves, inside, .. } = fourier.fitting(scratch, n);
+                let Scratch { waves, inside, .. } = fourier.fitting(scratch, row.len());
                 waves[0] = Complex::new(row[0], T::zero());
                 for (pair, wave) in row[1..].chunks(2).zip(&mut waves[1..]) {
                     *wave = Complex::new(pair[0], pair.get(1).copied().unwrap_or_else(T::zero));
                 }
                 fourier.back(waves, row, inside);
             }
-            Transform::Closed(fourier, turns) => {
-                let Scratch { row: copy, waves, inside } = fourier.fitting(scratch, n);
-                for (k, (wave, turn)) in waves.iter_mut().zip(turns).enumerate() {
-                    let sine = if k > 0 { row[n - k] } else { T::zero() };
-                    *wave = Complex::new(row[k], -sine) * turn.conj();
-                    if is_real(k) {
-                        wave.im = T::zero();
-                    }
-                }
-                fourier.back(waves, copy, inside);
-                for (k, u) in row.iter_mut().enumerate() {
-                    *u = copy[shuffled(k, n)];
-                }
-            }
-            Transform::Open(quarter_waves) => {
-                open(quarter_waves.as_ref(), &mut row[..n - 1], scratch);
-                row[n - 1] = -row[n - 2];
+            Transform::Closed(cosines) => cosines.back(row, scratch),
+            Transform::Open(cosines) => {
+                let [row @ .., last] = row else { return };
+                quarter_waves(cosines, row, scratch);
+                *last = row.last().map_or_else(T::zero, |&u| -u);
             }
         }
     }
 }
 
 /// Quarter waves there and, the same, back.
-fn open<T: DctNum>(waves: &dyn TransformType4<T>, row: &mut [T], scratch: &mut Scratch<T>) {
-    let inside = &mut scratch.row;
-    inside.resize(waves.get_scratch_len().max(inside.len()), T::zero());
-    waves.process_dct4_with_scratch(row, inside);
+fn quarter_waves<T: FftNum>(cosines: &Cosines<T>, row: &mut [T], scratch: &mut Scratch<T>) {
+    let mut twice = std::mem::take(&mut scratch.twice);
+    twice.clear();
+    twice.extend_from_slice(row);
+    twice.extend(row.iter().rev().map(|&u| -u));
+    cosines.forward(&mut twice, scratch);
+    let half: T = of(0.5);
+    for (u, wave) in row.iter_mut().zip(twice.chunks(2)) {
+        *u = half * wave[1];
+    }
+    scratch.twice = twice;
+}
+
+/// The discrete cosine transform of type II, and its inverse.
+struct Cosines<T: FftNum> {
+    fourier: Fourier<T>,
+    /// `exp(-i pi k / (2 n))`.
+    turns: Vec<Complex<T>>,
+}
+
+impl<T: FftNum> Cosines<T> {
+    fn new(points: usize) -> Self {
+        let turn = |k: usize| {
+            let angle = -PI * k as f64 / (2 * points) as f64;
+            Complex::new(of(angle.cos()), of(angle.sin()))
+        };
+        Self { fourier: Fourier::new(points), turns: (0..=points / 2).map(turn).collect() }
+    }
+
+    fn forward(&self, row: &mut [T], scratch: &mut Scratch<T>) {
+        let n = row.len();
+        let Scratch { row: copy, waves, inside, .. } = self.fourier.fitting(scratch, n);
+        for (k, &u) in row.iter().enumerate() {
+            copy[shuffled(k, n)] = u;
+        }
+        self.fourier.forward(copy, waves, inside);
+        for (k, (wave, turn)) in waves.iter().zip(&self.turns).enumerate() {
+            let turned = wave * turn;
+            row[k] = turned.re;
+            if k > 0 {
+                row[n - k] = -turned.im;
+            }
+        }
+    }
+
+    fn back(&self, row: &mut [T], scratch: &mut Scratch<T>) {
+        let n = row.len();
+        // Waves that are their own mirror image are real.
+        let is_real = |k: usize| k == 0 || 2 * k == n;
+        let Scratch { row: copy, waves, inside, .. } = self.fourier.fitting(scratch, n);
+        for (k, (wave, turn)) in waves.iter_mut().zip(&self.turns).enumerate() {
+            let sine = if k > 0 { row[n - k] } else { T::zero() };
+            *wave = Complex::new(row[k], -sine) * turn.conj();
+            if is_real(k) {
+                wave.im = T::zero();
+            }
+        }
+        self.fourier.back(waves, copy, inside);
+        for (k, u) in row.iter_mut().enumerate() {
+            *u = copy[shuffled(k, n)];
+        }
+    }
+}
+
+/// The transform of a real row into waves.
+struct Fourier<T: FftNum> {
+    forward: Arc<dyn RealToComplex<T>>,
+    back: Arc<dyn ComplexToReal<T>>,
 }
 
 impl<T: FftNum> Fourier<T> {
