@@ -48,15 +48,31 @@ impl<D: Domain> Whole<'_, D> {
         partial: impl Fn(&Near<'_, D>) -> [f64; N] + Sync,
         combine: impl Fn(f64, f64) -> f64,
     ) -> [f64; N] {
+        let mut total = identity;
+        let partials = self.partials(N, &|near, values| values.copy_from_slice(&partial(near)));
+        for contribution in partials.chunks_exact(N) {
+            for (total, &x) in total.iter_mut().zip(contribution) {
+                *total = combine(*total, x);
+            }
+        }
+        total
+    }
+
+    /// What every sub-domain contributes, `each` numbers; compiled once for a domain.
+    fn partials(
+        &mut self,
+        each: usize,
+        partial: &(dyn Fn(&Near<'_, D>, &mut [f64]) + Sync),
+    ) -> &[f64] {
         let partition = self.domain.partition();
         assert!(partition.is_sealed(), "the domain's partition is not sealed");
         assert_eq!(partition.points(), self.columns.points());
         let Partials { values, slots } = &mut *self.partials;
         slots_of(self.columns, slots);
         values.clear();
-        values.resize(partition.len() * N, 0.0);
+        values.resize(partition.len() * each, 0.0);
         let (domain, slots) = (&*self.domain, &**slots);
-        self.team.for_each_chunk(values, N, |id, values| {
+        self.team.for_each_chunk(values, each, |id, values| {
             let (shifts, displaced) = (Shifts::NONE, ColumnSet::default());
             let (notebook, activity) = (Notebook::EMPTY, &UNWATCHED);
             let place =
@@ -64,15 +80,9 @@ impl<D: Domain> Whole<'_, D> {
             // SAFETY: the partition is sealed and has as many points as the columns, which are
             // borrowed exclusively here; nobody writes any of them during the reduction.
             let near = unsafe { Near::new(place, ColumnSet::default()) };
-            values.copy_from_slice(&partial(&near));
+            partial(&near, values);
         });
-        let mut total = identity;
-        for contribution in values.chunks_exact(N) {
-            for (total, &x) in total.iter_mut().zip(contribution) {
-                *total = combine(*total, x);
-            }
-        }
-        total
+        values
     }
 
     /// Sums `N` numbers over all sub-domains; see [`Whole::reduce`].
