@@ -8,6 +8,7 @@ use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::{env, io, process, thread};
 
+use finegrain::bench::samples::median;
 use finegrain::framework::Schedule;
 use finegrain::framework::trace::{Shares, Summary};
 use finegrain::scene::{Orders, Precision, Scene};
@@ -42,17 +43,18 @@ fn main() -> Result<(), Error> {
             }
         }
         let fixed = runs[0].clone();
-        for (mut runs, schedule) in runs.into_iter().zip(SCHEDULES) {
+        for (runs, schedule) in runs.into_iter().zip(SCHEDULES) {
             let ratios = fixed.iter().zip(&runs).map(|(fixed, own)| fixed.0 / own.0);
-            let beside = median(ratios.collect());
-            runs.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let (best, median) = (runs[0].0, runs[SAMPLES / 2]);
+            let beside = median(ratios).expect("a sample");
+            let best = runs.iter().map(|run| run.0).fold(f64::INFINITY, f64::min);
+            let seconds = median(runs.iter().map(|run| run.0)).expect("a sample");
+            let waiting = median(runs.iter().map(|run| run.1)).expect("a sample");
             let machine = if busy { "one core shared" } else { "alone" };
             println!(
                 "| {machine} | {schedule} | {:.3} | {:.3} | {beside:.2} | {:.1} % |",
                 1e3 * best,
-                1e3 * median.0,
-                100.0 * median.1
+                1e3 * seconds,
+                100.0 * waiting
             );
         }
     }
@@ -79,11 +81,6 @@ fn run(schedule: Schedule, workers: usize) -> Result<(f64, f64), Error> {
 fn waiting(summary: &Summary) -> f64 {
     let sum = |part: fn(&Shares) -> f64| summary.workers.iter().map(part).sum::<f64>();
     sum(|shares| shares.waiting) / sum(|shares| shares.busy + shares.hand_out + shares.waiting)
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Another process, with as much right to a core as a worker.

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use finegrain::bench::samples::median;
+
 /// One way to do it.
 pub struct Case<'a> {
     /// What it is.
@@ -24,19 +26,15 @@ impl<'a> Case<'a> {
 
     /// Median sample, in seconds.
     pub fn median(&self) -> f64 {
-        median(self.seconds.clone())
+        median(self.seconds.iter().copied()).expect("a sample")
     }
 
     /// How many times as fast as `other` it is: median of the ratios of samples taken right after
     /// one another.
     pub fn speed_beside(&self, other: &Self) -> f64 {
-        median(other.seconds.iter().zip(&self.seconds).map(|(other, own)| other / own).collect())
+        let ratios = other.seconds.iter().zip(&self.seconds).map(|(other, own)| other / own);
+        median(ratios).expect("a sample")
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Takes `samples` samples of every case, one of each in turn: whatever else the machine does

@@ -8,7 +8,7 @@ use finegrain_framework::{Real, RunError, Settings, Simulation};
 use finegrain_sph::{Pairs, SweepPart, Viscosity, measure};
 
 use super::cylinder::{Plan, model};
-use super::overheads;
+use super::limits;
 use crate::scene::{Precision, SceneError};
 
 /// Time between two looks at what the worker is doing.
@@ -75,10 +75,10 @@ fn measure_in<T: Real, P: Real>(plan: &Plan) -> Result<Breakdown, SceneError> {
     let between = between / plan.steps as f64;
 
     let limit = |error| SceneError::Workers { workers: 1, cause: error };
-    let peak = overheads::multiply_adds::<T>();
-    let single = overheads::multiply_adds::<f32>();
-    let in_cache = overheads::copy_bandwidth(32 << 10, 1).map_err(limit)?;
-    let in_memory = overheads::copy_bandwidth(512 << 20, 1).map_err(limit)?;
+    let peak = limits::multiply_adds::<T>();
+    let single = limits::multiply_adds::<f32>();
+    let in_cache = limits::copy_bandwidth(32 << 10, 1).map_err(limit)?;
+    let in_memory = limits::copy_bandwidth(512 << 20, 1).map_err(limit)?;
 
     // The counts are those of the paper's formulation.
     let counts = |count: Count, times: f64| {

@@ -6,21 +6,25 @@
 //! al. 1997) holds about as many particles as its Table 1 says. The box is fitted to whole layers
 //! of the close packing, an even number where periodicity demands it, so that the packing is
 //! periodic.
+//!
+//! A model of every number of workers is in memory at the same time, and as many separate ones as the
+//! most workers: what is needed grows with the number of cores.
 
-use std::path::PathBuf;
-use std::thread;
+use std::path::{Path, PathBuf};
+use std::{fs, thread};
 
 use finegrain_framework::run::{Dump, Every, Run, RunFailed, Until};
 use finegrain_framework::shape::{Axis, Shape};
 use finegrain_framework::space::Cells;
 use finegrain_framework::trace::Trace;
 use finegrain_framework::{Real, Schedule, Settings, Simulation};
+use finegrain_sph::packing::{Lattice, PackingError};
 use finegrain_sph::{
     Fluid, Packing, Pairs, Physics, Scheme, Sph, StateEquation, Viscosity, measure,
 };
 
 use super::memory;
-use super::row::Row;
+use super::row::{Row, Turn};
 use crate::scene::{Precision, SceneError, sph::cylinder::start};
 
 /// Particle spacing of the paper, m.
@@ -37,12 +41,12 @@ pub const WIDTHS: [f64; 7] = [0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.007];
 pub struct Plan {
     /// Widths of the box, m.
     pub widths: Vec<f64>,
-    /// Numbers of workers; the first is what speed-up refers to if it is 1.
+    /// Numbers of workers; speed-up refers to one, if it is among them.
     pub workers: Vec<usize>,
     /// Steps of a sample.
     pub steps: u64,
-    /// Samples of each. The numbers of workers take turns every few steps, so that a machine whose
-    /// speed drifts slows all of them.
+    /// Samples of each. The numbers of workers take turns every 10 steps, so that a machine whose speed
+    /// drifts slows all of them.
     pub repeats: usize,
     /// How workers meet.
     pub schedule: Schedule,
@@ -56,9 +60,23 @@ pub struct Plan {
     pub out: PathBuf,
 }
 
+impl Plan {
+    fn most_workers(&self) -> usize {
+        self.workers.iter().copied().max().unwrap_or(1)
+    }
+}
+
+/// The particles, and the box that is fitted to them, for a width.
+///
+/// # Errors
+/// If the width is less than a layer.
+pub fn lattice(width: f64) -> Result<Lattice, PackingError> {
+    Packing::HexagonalClosePacked.fit([SIDE, SIDE, width], SPACING)
+}
+
 /// Builds the paper's model for a width.
 pub(super) fn model<T: Real, P: Real>(width: f64, plan: &Plan) -> Result<Sph<T, P>, SceneError> {
-    let lattice = Packing::HexagonalClosePacked.fit([SIDE, SIDE, width], SPACING)?;
+    let lattice = lattice(width)?;
     let lengths = lattice.lengths();
     let body = Shape::Cylinder {
         axis: Axis::Z,
@@ -109,16 +127,17 @@ fn measure_in<T: Real, P: Real>(
     // Memory before anything else: allocators keep some of what many runs at once have freed.
     let groups = plan.widths.iter().map(|&width| empty_rows::<T, P>(plan, width));
     let mut groups = groups.collect::<Result<Vec<_>, _>>()?;
+    let one = plan.workers.iter().position(|&workers| workers == 1);
     for (group, &width) in groups.iter_mut().zip(&plan.widths) {
         for _ in 0..plan.repeats {
-            let seconds = sample::<T, P>(plan, width)?;
-            for (row, &own) in group.iter_mut().zip(&seconds) {
-                row.seconds_per_step.push(own.together);
-                row.in_stages.push(own.in_stages);
-                if plan.workers[0] == 1 && row.workers > 1 {
-                    row.alone.push(seconds[0].together);
-                    row.alone_in_stages.push(seconds[0].in_stages);
-                    row.apart.push(own.apart);
+            let sample = sample::<T, P>(plan, width)?;
+            for (row, turns) in group.iter_mut().zip(&sample.together) {
+                row.turns.extend(turns);
+                if let Some(one) = one.filter(|_| row.workers > 1) {
+                    row.alone.extend(&sample.together[one]);
+                }
+                if row.workers == plan.most_workers() {
+                    row.apart.extend(&sample.apart);
                 }
                 say(row);
             }
@@ -133,7 +152,7 @@ fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, Sce
     let mut rows = Vec::new();
     for &workers in &plan.workers {
         memory::reset_peak();
-        let mut run = start_run::<T, P>(plan, width, workers, false)?;
+        let mut run = start_run::<T, P>(plan, width, workers, Tracing::Off)?;
         run.run()?;
         // Before anything else is allocated.
         let peak_memory = memory::peak();
@@ -147,10 +166,8 @@ fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, Sce
                 Viscosity::StrainRate => 2,
                 Viscosity::Morris | Viscosity::Adami | Viscosity::Monaghan => 1,
             },
-            seconds_per_step: Vec::new(),
-            in_stages: Vec::new(),
+            turns: Vec::new(),
             alone: Vec::new(),
-            alone_in_stages: Vec::new(),
             apart: Vec::new(),
             peak_memory,
         });
@@ -158,78 +175,85 @@ fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, Sce
     Ok(rows)
 }
 
-/// Seconds a step of one sample, results dumps included, initial preparations and the first steps
-/// not.
-#[derive(Clone, Copy, Default)]
+/// Turns of one sample, results dumps included, initial preparations and the first steps not.
 struct Sample {
-    /// Of one run with all workers.
-    together: f64,
-    /// Of the same, what all its workers together spent in stages.
-    in_stages: f64,
-    /// Of separate runs with one worker each; 0 with one worker.
-    apart: f64,
+    /// Of every number of workers.
+    together: Vec<Vec<Turn>>,
+    /// Seconds a step of separate runs with one worker each, as many as the most workers.
+    apart: Vec<f64>,
 }
 
-/// The runs of one number of workers.
-struct Runs<P: Real> {
-    together: Run<Cells<P>>,
-    apart: Vec<Run<Cells<P>>>,
-}
-
-impl<P: Real> Runs<P> {
-    fn until(self, until: Until) -> Self {
-        let apart = self.apart.into_iter().map(|run| run.until(until)).collect();
-        Self { together: self.together.until(until), apart }
+/// Numbers of workers take turns, and the separate runs with them.
+fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Sample, SceneError> {
+    let start = |&workers| start_run::<T, P>(plan, width, workers, Tracing::On);
+    let mut together = plan.workers.iter().map(start).collect::<Result<Vec<_>, _>>()?;
+    let separate = plan.out.join("separate");
+    let mut apart = start_apart::<T, P>(plan, width, &separate)?;
+    for run in &mut together {
+        run.run()?;
     }
-}
+    side_by_side(&mut apart)?;
 
-/// One sample for each number of workers.
-fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Sample>, SceneError> {
-    let mut runs = Vec::new();
-    for &workers in &plan.workers {
-        let mut own =
-            Runs { together: start_run::<T, P>(plan, width, workers, true)?, apart: Vec::new() };
-        if plan.workers[0] == 1 && workers > 1 {
-            for part in 0..workers {
-                let run = start_run::<T, P>(plan, width, 1, false)?;
-                own.apart.push(run.out(plan.out.join(format!("apart/{part}"))));
-            }
+    let mut sample = Sample { together: vec![Vec::new(); together.len()], apart: Vec::new() };
+    for begin in (0..plan.steps).step_by(TURN as usize) {
+        let end = (begin + TURN).min(plan.steps);
+        let count = (end - begin) as f64;
+        let go_on = |run: Run<Cells<P>>| run.until(steps(WARM_UP + end));
+        together = together.into_iter().map(go_on).collect();
+        apart = apart.into_iter().map(go_on).collect();
+        for (run, turns) in together.iter_mut().zip(&mut sample.together) {
+            let seconds = run.run()?.wall_clock.as_secs_f64() / count;
+            let trace = run.simulation().trace();
+            let in_stages = trace.map_or(0.0, |trace| in_stages(trace, WARM_UP + begin)) / count;
+            turns.push(Turn { seconds, in_stages });
         }
-        own.together.run()?;
-        side_by_side(&mut own.apart)?;
-        runs.push(own);
-    }
-    let mut samples = vec![Sample::default(); runs.len()];
-    let mut done = 0;
-    while done < plan.steps {
-        let begun = done;
-        done = (done + TURN).min(plan.steps);
-        let until = steps(WARM_UP + done);
-        runs = runs.into_iter().map(|own| own.until(until)).collect();
-        for (own, sample) in runs.iter_mut().zip(&mut samples) {
-            sample.together += own.together.run()?.wall_clock.as_secs_f64() / plan.steps as f64;
-            if let Some(trace) = own.together.simulation().trace() {
-                sample.in_stages += in_stages(trace, WARM_UP + begun) / plan.steps as f64;
-            }
-            sample.apart += side_by_side(&mut own.apart)? / plan.steps as f64;
+        if !apart.is_empty() {
+            sample.apart.push(side_by_side(&mut apart)? / count);
         }
     }
-    Ok(samples)
+    drop(apart);
+    // Their dumps were only written because the others' are; what cannot be removed does no harm.
+    let _ = fs::remove_dir_all(separate);
+    Ok(sample)
+}
+
+/// As many separate runs as the most workers, with what they write in `folder`; none where there is nothing to
+/// compare them with.
+fn start_apart<T: Real, P: Real>(
+    plan: &Plan,
+    width: f64,
+    folder: &Path,
+) -> Result<Vec<Run<Cells<P>>>, SceneError> {
+    let most = plan.most_workers();
+    if most == 1 || !plan.workers.contains(&1) {
+        return Ok(Vec::new());
+    }
+    let started = at_the_same_time((0..most).map(|number| {
+        move || {
+            let run = start_run::<T, P>(plan, width, 1, Tracing::On)?;
+            Ok(run.out(folder.join(number.to_string())))
+        }
+    }));
+    started.into_iter().collect()
 }
 
 /// Runs all at the same time; mean wall-clock seconds that one took.
 fn side_by_side<P: Real>(runs: &mut [Run<Cells<P>>]) -> Result<f64, SceneError> {
     let count = runs.len().max(1) as f64;
-    let ended: Vec<_> = thread::scope(|scope| {
-        let threads: Vec<_> = runs.iter_mut().map(|run| scope.spawn(|| run.run())).collect();
-        threads.into_iter().map(|thread| thread.join()).collect()
-    });
     let mut seconds = 0.0;
-    for end in ended {
-        let summary = end.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-        seconds += summary.wall_clock.as_secs_f64() / count;
+    for summary in at_the_same_time(runs.iter_mut().map(|run| || run.run())) {
+        seconds += summary?.wall_clock.as_secs_f64() / count;
     }
     Ok(seconds)
+}
+
+/// What tasks return that run at the same time, each on a thread of its own.
+fn at_the_same_time<R: Send>(tasks: impl Iterator<Item = impl FnOnce() -> R + Send>) -> Vec<R> {
+    thread::scope(|scope| {
+        let threads: Vec<_> = tasks.map(|task| scope.spawn(task)).collect();
+        let ended = threads.into_iter().map(|thread| thread.join());
+        ended.map(|end| end.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
 }
 
 /// Seconds that all workers together spent in stages from step `first` on.
@@ -248,16 +272,23 @@ pub fn dump_folder(plan: &Plan, workers: usize) -> PathBuf {
     plan.out.join(format!("workers-{workers}"))
 }
 
-/// A run that is ready for its first step, and to end when it is warm; `traced`, it remembers as many
+/// Whether a run remembers when its workers were in stages.
+#[derive(Clone, Copy, PartialEq)]
+enum Tracing {
+    On,
+    Off,
+}
+
+/// A run that is ready for its first step, and to end when it is warm; traced, it remembers as many
 /// parts as there are particles, which is more than a turn's: a sub-domain has 256 particles.
 fn start_run<T: Real, P: Real>(
     plan: &Plan,
     width: f64,
     workers: usize,
-    traced: bool,
+    tracing: Tracing,
 ) -> Result<Run<Cells<P>>, SceneError> {
     let sph = model::<T, P>(width, plan)?;
-    let trace = if traced { sph.model.columns.points() } else { 0 };
+    let trace = if tracing == Tracing::On { sph.model.columns.points() } else { 0 };
     let settings = Settings { schedule: plan.schedule, workers, trace, ..Settings::default() };
     let mut simulation = Simulation::new(sph.model, settings)
         .map_err(|cause| SceneError::Workers { workers, cause })?;

@@ -17,10 +17,10 @@ pub fn draw(out: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, FigureError> {
     let mut pictures = Vec::new();
 
     let path = out.join("fig10-time-per-step.png");
-    let chart = Chart::new("Time per step (Fig. 10; medians, bars from best to worst)")
+    let chart = Chart::new("Time per step (Fig. 10; medians, bars from best to worst turn)")
         .x(workers())
         .y(Axis::new("time per step, log scale").unit("s").scale(Scale::Log10));
-    let own = |row: &Row| row.seconds_per_step.clone();
+    let own = |row: &Row| row.turns.iter().map(|turn| turn.seconds).collect();
     series(chart, rows, |row| Some(row.seconds()), own).save(&path)?;
     pictures.push(path);
 
@@ -53,7 +53,7 @@ fn ratio(row: &Row, by: f64) -> Option<f64> {
     Some(speed_up? / by)
 }
 
-/// Adds a line a model size, with bars over all its samples.
+/// Adds a line a model size, with bars over all its turns.
 fn series(
     mut chart: Chart,
     rows: &[Row],

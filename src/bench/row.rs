@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use super::samples::median;
+
 /// What was measured for one width and number of workers.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -15,54 +17,68 @@ pub struct Row {
     pub neighbours: f64,
     /// Sweeps over all pairs that a step makes.
     pub sweeps: usize,
-    /// Seconds a step of every sample, results dumps included.
-    pub seconds_per_step: Vec<f64>,
-    /// Of these, seconds that all workers together spent in stages.
-    pub in_stages: Vec<f64>,
-    /// Seconds a step with one worker, sample by sample; empty if that was not measured.
-    pub alone: Vec<f64>,
-    /// Of these, seconds in stages.
-    pub alone_in_stages: Vec<f64>,
+    /// Turns of a few steps with these workers.
+    pub turns: Vec<Turn>,
+    /// Turns with one worker, each right beside one of `turns`; empty if that was not measured.
+    pub alone: Vec<Turn>,
     /// Seconds a step of as many separate runs of one worker each as there are workers, all at the
-    /// same time, sample by sample; empty with one worker. They share nothing but the machine: what
+    /// same time, turn by turn; only for the most workers. They share nothing but the machine: what
     /// is lost here the machine takes, by its clock, its memory and its other users.
     pub apart: Vec<f64>,
     /// Largest resident memory of the process, bytes.
     pub peak_memory: Option<u64>,
 }
 
-/// Middle value, the lower one of two.
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
+/// What was measured in a few steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    /// Seconds a step, results dumps included.
+    pub seconds: f64,
+    /// Seconds a step that all workers together spent in stages.
+    pub in_stages: f64,
 }
 
-/// Middle value of some, if there are any.
-fn median_of(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let values: Vec<_> = values.into_iter().collect();
-    (!values.is_empty()).then(|| median(&values))
+/// Median seconds a step; `None` without turns.
+fn seconds(turns: &[Turn]) -> Option<f64> {
+    median(turns.iter().map(|turn| turn.seconds))
+}
+
+/// Median seconds a step in stages.
+fn in_stages(turns: &[Turn]) -> Option<f64> {
+    median(turns.iter().map(|turn| turn.in_stages))
+}
+
+/// Seconds a step of the best turn.
+fn best(turns: &[Turn]) -> Option<f64> {
+    turns.iter().map(|turn| turn.seconds).reduce(f64::min)
 }
 
 impl Row {
-    /// Median seconds a step.
+    /// Median seconds a step; not a number without turns.
     pub fn seconds(&self) -> f64 {
-        median(&self.seconds_per_step)
+        seconds(&self.turns).unwrap_or(f64::NAN)
     }
 
-    /// Seconds a step of the best sample.
+    /// Seconds a step of the best turn; not a number without turns.
     pub fn best(&self) -> f64 {
-        self.seconds_per_step.iter().copied().fold(f64::INFINITY, f64::min)
+        best(&self.turns).unwrap_or(f64::NAN)
     }
 
-    /// Speed-up over one worker (eq. 9) of every sample, each against its own turn's.
-    pub fn speed_ups(&self) -> Vec<f64> {
-        self.alone.iter().zip(&self.seconds_per_step).map(|(one, many)| one / many).collect()
-    }
-
-    /// Speed-up over one worker: median over the samples.
+    /// Speed-up over one worker (eq. 9): median seconds a step with one over median seconds a step with
+    /// these. The turns of both lie side by side, so that a machine whose speed drifts slows both.
     pub fn speed_up(&self) -> Option<f64> {
-        median_of(self.speed_ups())
+        Some(seconds(&self.alone)? / seconds(&self.turns)?)
+    }
+
+    /// The same of the best turns.
+    pub fn best_speed_up(&self) -> Option<f64> {
+        Some(best(&self.alone)? / best(&self.turns)?)
+    }
+
+    /// Speed-up of every turn over the one with one worker beside it: how much it scatters.
+    pub fn speed_ups(&self) -> Vec<f64> {
+        let pairs = self.alone.iter().zip(&self.turns);
+        pairs.map(|(one, many)| one.seconds / many.seconds).collect()
     }
 
     /// Efficiency (eq. 10).
@@ -72,27 +88,21 @@ impl Row {
 
     /// Efficiency of the machine itself: that of as many separate runs as there are workers.
     pub fn machine_efficiency(&self) -> Option<f64> {
-        median_of(self.alone.iter().zip(&self.apart).map(|(one, all)| one / all))
+        Some(seconds(&self.alone)? / median(self.apart.iter().copied())?)
     }
 
     /// What the same stages take with one worker over what they take with all, summed over the workers:
     /// the part of the efficiency that is lost within the stages, to shared caches, memory and clock,
     /// and to other users of the machine.
     pub fn stage_efficiency(&self) -> Option<f64> {
-        let pairs = self.alone_in_stages.iter().zip(&self.in_stages);
-        median_of(pairs.map(|(one, many)| one / many))
+        Some(in_stages(&self.alone)? / in_stages(&self.turns)?)
     }
 
     /// The rest of the efficiency: share of the workers' time that they spend in stages, over that of
     /// one worker. Lost here is what handing out, waiting for each other, sorting and writing take.
     pub fn schedule_efficiency(&self) -> Option<f64> {
-        let busy = |in_stages: &[f64], seconds: &[f64], workers: usize| {
-            let pairs = in_stages.iter().zip(seconds);
-            pairs.map(|(own, all)| own / (all * workers as f64)).collect::<Vec<_>>()
-        };
-        let one = busy(&self.alone_in_stages, &self.alone, 1);
-        let many = busy(&self.in_stages, &self.seconds_per_step, self.workers);
-        median_of(many.iter().zip(&one).map(|(many, one)| many / one))
+        let busy = |turns: &[Turn]| Some(in_stages(turns)? / seconds(turns)?);
+        Some(busy(&self.turns)? / self.workers as f64 / busy(&self.alone)?)
     }
 
     /// Pairs of neighbours a second and worker in whole steps, each pair counted once a step from
@@ -119,14 +129,14 @@ impl Row {
 pub fn write_csv(path: &Path, rows: &[Row]) -> std::io::Result<()> {
     let mut text = String::from(
         "width_m,particles,workers,neighbours,sweeps,seconds_per_step_median,\
-         seconds_per_step_best,speed_up,efficiency,stage_efficiency,\
+         seconds_per_step_best,speed_up,speed_up_best,efficiency,stage_efficiency,\
          schedule_efficiency,machine_efficiency,pairs_per_s_and_core,\
          pair_interactions_per_s_and_core,bytes_per_particle\n",
     );
     let optional = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.4}"));
     for row in rows {
         text += &format!(
-            "{},{},{},{:.2},{},{:.6e},{:.6e},{},{},{},{},{},{:.4e},{:.4e},{}\n",
+            "{},{},{},{:.2},{},{:.6e},{:.6e},{},{},{},{},{},{},{:.4e},{:.4e},{}\n",
             row.width,
             row.particles,
             row.workers,
@@ -135,6 +145,7 @@ pub fn write_csv(path: &Path, rows: &[Row]) -> std::io::Result<()> {
             row.seconds(),
             row.best(),
             optional(row.speed_up()),
+            optional(row.best_speed_up()),
             optional(row.efficiency()),
             optional(row.stage_efficiency()),
             optional(row.schedule_efficiency()),
@@ -151,26 +162,47 @@ pub fn write_csv(path: &Path, rows: &[Row]) -> std::io::Result<()> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn efficiency_is_lost_in_stages_or_between_them() {
-        // One worker is 0.9 of a second in stages; two are 0.5 each, of 0.6.
-        let row = Row {
+    fn turns(turns: &[[f64; 2]]) -> Vec<Turn> {
+        turns.iter().map(|&[seconds, in_stages]| Turn { seconds, in_stages }).collect()
+    }
+
+    fn row(own: &[[f64; 2]], alone: &[[f64; 2]], apart: &[f64]) -> Row {
+        Row {
             width: 0.001,
             particles: 1,
             workers: 2,
             neighbours: 1.0,
             sweeps: 1,
-            seconds_per_step: vec![0.6],
-            in_stages: vec![1.0],
-            alone: vec![1.0],
-            alone_in_stages: vec![0.9],
-            apart: vec![1.1],
+            turns: turns(own),
+            alone: turns(alone),
+            apart: apart.to_vec(),
             peak_memory: None,
-        };
+        }
+    }
+
+    #[test]
+    fn efficiency_is_lost_in_stages_or_between_them() {
+        // One worker is 0.9 of a second in stages; two are 0.5 each, of 0.6.
+        let row = row(&[[0.6, 1.0]], &[[1.0, 0.9]], &[1.1]);
         let efficiencies = [row.stage_efficiency(), row.schedule_efficiency(), row.efficiency()];
         let [stages, schedule, all] = efficiencies.map(Option::unwrap);
         assert!((stages - 0.9).abs() < 1e-12);
         assert!((schedule - 1.0 / 1.2 / 0.9).abs() < 1e-12);
         assert!((stages * schedule - all).abs() < 1e-12);
+        assert!((row.machine_efficiency().unwrap() - 1.0 / 1.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_columns_of_a_table_belong_together() {
+        let own = [[0.5, 0.9], [0.8, 1.1], [0.6, 0.95], [0.7, 1.0]];
+        let alone = [[1.3, 0.9], [1.0, 0.8], [1.5, 1.2], [1.1, 1.0]];
+        let row = row(&own, &alone, &[]);
+        // Means of the two in the middle: 0.6 and 0.7; 1.1 and 1.3.
+        assert!((row.seconds() - 0.65).abs() < 1e-12);
+        assert!((row.speed_up().unwrap() - 1.2 / 0.65).abs() < 1e-12);
+        assert!((row.best_speed_up().unwrap() - 1.0 / 0.5).abs() < 1e-12);
+        let product = row.stage_efficiency().unwrap() * row.schedule_efficiency().unwrap();
+        assert!((product - row.efficiency().unwrap()).abs() < 1e-12);
+        assert_eq!(row.machine_efficiency(), None);
     }
 }

@@ -8,8 +8,9 @@ use finegrain::bench::breakdown::{self, Breakdown};
 use finegrain::bench::cylinder::{self, Plan};
 use finegrain::bench::figures;
 use finegrain::bench::row::{self, Row};
+use finegrain::bench::workers;
 use finegrain::framework::Schedule;
-use finegrain::scene::Precision;
+use finegrain::scene::{Precision, SceneError};
 use finegrain::sph::{Pairs, Viscosity};
 
 use super::CommandError;
@@ -60,17 +61,18 @@ pub enum KeptPairs {
 /// Arguments of `finegrain bench cylinder`.
 #[derive(Args)]
 pub struct CylinderArguments {
-    /// Widths of the box in metres, separated by commas; the paper's are 0.001 to 0.007, 100,000
-    /// particles each 0.001.
+    /// Widths of the box in metres, separated by commas; the paper's are 0.001 to 0.007, about 100,000
+    /// particles each 0.001. It does not give the other sides, which are chosen to hold as many; the box is
+    /// fitted to whole layers of the packing.
     #[arg(long, value_delimiter = ',', default_value = "0.001", value_parser = width)]
     sizes: Vec<f64>,
-    /// Numbers of workers, separated by commas; 1 to all cores by default.
+    /// Numbers of workers, separated by commas; 1, 2, 4 ... and all cores by default.
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Vec<u16>,
     /// Steps of a sample.
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..))]
     steps: u64,
-    /// Samples of each number of workers.
+    /// Samples of each number of workers; they take turns every 10 steps.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
     /// How workers meet: serial, lockstep, peer-to-peer, fork-join or fixed.
@@ -102,8 +104,7 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
     let out = &mut std::io::stdout();
     let BenchCommand::Cylinder(arguments) = command;
     let workers = if arguments.workers.is_empty() {
-        let cores = std::thread::available_parallelism()?.get();
-        (1..=cores).collect()
+        workers::doubling(std::thread::available_parallelism()?.get())
     } else {
         arguments.workers.iter().map(|&w| usize::from(w)).collect()
     };
@@ -133,8 +134,9 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
         plan.schedule,
         finegrain::framework::lanes::instruction_set()
     )?;
+    boxes(out, &plan)?;
     let rows = cylinder::measure(&plan, |row| {
-        let last = row.seconds_per_step.last().copied().unwrap_or_default();
+        let last = row.turns.last().map_or(0.0, |turn| turn.seconds);
         // Only progress: who does not listen misses nothing.
         let _ = writeln!(
             std::io::stderr(),
@@ -160,16 +162,38 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
     Ok(())
 }
 
+/// Says what is assumed that the paper does not say.
+fn boxes(out: &mut impl Write, plan: &Plan) -> Result<(), CommandError> {
+    writeln!(
+        out,
+        "The paper gives spacing ({} m) and widths. A cylinder of radius {} m across a box of {} m x {} m is\n\
+         assumed here; the box is fitted to whole layers of the close packing:",
+        cylinder::SPACING,
+        cylinder::RADIUS,
+        cylinder::SIDE,
+        cylinder::SIDE
+    )?;
+    for &width in &plan.widths {
+        let lattice = cylinder::lattice(width).map_err(SceneError::from)?;
+        let [x, y, z] = lattice.lengths();
+        let sites = lattice.count();
+        writeln!(out, "  width {width} m: {x:.5} m x {y:.5} m x {z:.5} m, {sites} particles")?;
+    }
+    Ok(())
+}
+
 fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     writeln!(
         out,
-        "\n{:>7} {:>9} {:>7} {:>12} {:>12} {:>8} {:>10} {:>7} {:>8} {:>7} {:>13} {:>9}",
+        "\n{:>7} {:>9} {:>7} {:>12} {:>12} {:>8} {:>6} {:>10} {:>7} {:>8} {:>7} {:>13} \
+         {:>9}",
         "width/m",
         "particles",
         "workers",
         "s/step (med)",
         "s/step (min)",
         "speed-up",
+        "(best)",
         "efficiency",
         "stages",
         "schedule",
@@ -183,13 +207,14 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     for row in rows {
         writeln!(
             out,
-            "{:>7} {:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>10} {:>7} {:>8} {:>7} {:>13.1} {:>9}",
+            "{:>7} {:>9} {:>7} {:>12.4} {:>12.4} {:>8} {:>6} {:>10} {:>7} {:>8} {:>7} {:>13.1} {:>9}",
             row.width,
             row.particles,
             row.workers,
             row.seconds(),
             row.best(),
             optional(row.speed_up(), 3),
+            optional(row.best_speed_up(), 3),
             optional(row.efficiency(), 3),
             optional(row.stage_efficiency(), 3),
             optional(row.schedule_efficiency(), 3),
@@ -201,7 +226,8 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     if let Some(row) = rows.first() {
         writeln!(
             out,
-            "efficiency = stages x schedule: what the same stages take with one worker over what they take with\n\
+            "medians over turns of 10 steps; speed-up: of the medians (of the best turns); efficiency: over workers\n\
+             efficiency = stages x schedule: what the same stages take with one worker over what they take with\n\
              all, and the share of the time that workers spend in them, likewise\n\
              machine: efficiency of as many separate runs of one worker each, all at the same time\n\
              Minteractions: million pair interactions a second and core in whole steps (median), {:.1}\n\

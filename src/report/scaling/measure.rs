@@ -7,7 +7,7 @@ use finegrain_framework::format::AtomicFile;
 use finegrain_framework::{PartCost, Schedule, Workload};
 
 use super::forecast::{Overheads, seconds_per_step};
-use crate::bench::overheads;
+use crate::bench::{limits, overheads, workers};
 use crate::scene::{Orders, Parameters, Precision, Report, Scene, SceneError};
 
 /// What to run.
@@ -124,7 +124,7 @@ impl Scaling {
             meeting: overheads::meeting(workers).map_err(overhead)?,
         };
         let alone = plan.workload(Schedule::Lockstep, 1)?;
-        let bandwidth = overheads::copy_bandwidth(alone.bytes, workers).map_err(overhead)?;
+        let bandwidth = limits::copy_bandwidth(alone.bytes, workers).map_err(overhead)?;
         let mut forecasts = Vec::new();
         for schedule in SCHEDULES.into_iter().filter(|&schedule| schedule != Schedule::ForkJoin) {
             say(&format!("{schedule}: forecast up to {MOST} workers"));
@@ -188,9 +188,7 @@ impl Scaling {
 
 /// Schedules and numbers of workers to measure: powers of two, and all.
 fn cases(most: usize) -> impl Iterator<Item = (Schedule, usize)> {
-    let mut numbers: Vec<_> = (0..).map(|k| 1 << k).take_while(|&n| n < most).collect();
-    numbers.push(most);
-    numbers
+    workers::doubling(most)
         .into_iter()
         .flat_map(|workers| SCHEDULES.into_iter().map(move |schedule| (schedule, workers)))
 }
