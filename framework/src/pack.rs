@@ -2,8 +2,9 @@
 //! over them by itself.
 //!
 //! A kernel is written once over a [`Pack`] and run for the instruction set that
-//! [`pulp::Arch::dispatch`] finds. Every operation is exactly rounded and none is fused, so a number
-//! comes out with the same bits in whatever place of whatever pack it is computed.
+//! [`crate::instructions::dispatch`] finds. Every operation is exactly rounded and only
+//! [`Pack::mul_add`] is fused, so a number comes out with the same bits in whatever place of whatever
+//! pack it is computed.
 
 mod bypass;
 mod prefetch;
@@ -47,6 +48,9 @@ pub trait Pack:
     fn splat_like(self, value: Self::Scalar) -> Self {
         Self::splat(self.simd(), value)
     }
+
+    /// `self * by + plus`, rounded once.
+    fn mul_add(self, by: Self, plus: Self) -> Self;
 
     /// The absolute value of each.
     fn abs(self) -> Self;
@@ -107,7 +111,7 @@ macro_rules! packed {
     (
         $scalar:ident, $pack:ident, $vector:ident, $lanes:ident, $splat:ident,
         $packs:ident, $packs_mut:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident,
-        $abs:ident, $sqrt:ident, $max:ident, $min:ident
+        $mul_add:ident, $abs:ident, $sqrt:ident, $max:ident, $min:ident
     ) => {
         #[doc = concat!("A pack of `", stringify!($scalar), "`.")]
         #[derive(Clone, Copy)]
@@ -134,6 +138,12 @@ macro_rules! packed {
             #[inline(always)]
             fn simd(self) -> S {
                 self.simd
+            }
+
+            #[inline(always)]
+            fn mul_add(self, by: Self, plus: Self) -> Self {
+                let vector = self.simd.$mul_add(self.vector, by.vector, plus.vector);
+                Self { simd: self.simd, vector }
             }
 
             #[inline(always)]
@@ -234,6 +244,7 @@ packed!(
     mul_f32s,
     div_f32s,
     neg_f32s,
+    mul_add_f32s,
     abs_f32s,
     sqrt_f32s,
     max_f32s,
@@ -252,6 +263,7 @@ packed!(
     mul_f64s,
     div_f64s,
     neg_f64s,
+    mul_add_f64s,
     abs_f64s,
     sqrt_f64s,
     max_f64s,
@@ -262,7 +274,8 @@ packed!(
 mod tests {
     use super::*;
 
-    /// `y = sqrt(|q - x|) - max(q, x)` with `q = (2 x + y) / (1 - x y)`, over whole packs.
+    /// `y = sqrt(|q - x|) - max(q, x)` with `q = (2 x + y) / (1 - x y)`, twice with one rounding for both
+    /// operations, over whole packs.
     struct Task<'a, T> {
         x: &'a [T],
         y: &'a mut [T],
@@ -278,7 +291,8 @@ mod tests {
             let x = T::Pack::<S>::packs(simd, self.x);
             for (y, &x) in T::Pack::<S>::packs_mut(simd, self.y).iter_mut().zip(x) {
                 let (a, b) = (T::Pack::<S>::of(simd, x), T::Pack::<S>::of(simd, *y));
-                let quotient = (a * T::of(2.0) + b) / (-(a * b) + T::one());
+                let one = a.splat_like(T::one());
+                let quotient = a.mul_add(a.splat_like(T::of(2.0)), b) / (-a).mul_add(b, one);
                 let (greater, less) = (quotient.max(a), quotient.min(a));
                 *y = ((greater - less).abs().sqrt() - greater).vector();
             }
@@ -291,11 +305,11 @@ mod tests {
         let y: Vec<T> = x.iter().map(|x| x.sin() * T::of(0.7)).collect();
         let mut expected = y.clone();
         for (y, &x) in expected.iter_mut().zip(&x) {
-            let quotient = (x * T::of(2.0) + *y) / (-(x * *y) + T::one());
+            let quotient = x.mul_add(T::of(2.0), *y) / (-x).mul_add(*y, T::one());
             *y = (quotient - x).abs().sqrt() - quotient.max(x);
         }
         let mut now = y.clone();
-        let lanes = pulp::Arch::new().dispatch(Task { x: &x, y: &mut now });
+        let lanes = crate::instructions::dispatch(Task { x: &x, y: &mut now });
         let whole = x.len() / lanes * lanes;
         assert_eq!(now[..whole], expected[..whole]);
         assert_eq!(now[whole..], y[whole..]);

@@ -226,7 +226,7 @@ mod tests {
         assert!(f32::NAN.exp_lane().is_nan());
     }
 
-    /// Exponentials of `x` into `exponentials`, as a task for [`pulp::Arch::dispatch`].
+    /// Exponentials of `x` into `exponentials`, as a task for [`crate::instructions::dispatch`].
     struct Exponentials<'a, T> {
         x: &'a [T],
         exponentials: &'a mut [T],
@@ -246,7 +246,7 @@ mod tests {
     fn assert_same_bits_in_every_instruction_set<T: Real>(x: &[T]) {
         let baseline: Vec<T> = x.iter().map(|x| x.exp_lane()).collect();
         let mut exponentials = vec![T::zero(); x.len()];
-        pulp::Arch::new().dispatch(Exponentials { x, exponentials: &mut exponentials });
+        crate::instructions::dispatch(Exponentials { x, exponentials: &mut exponentials });
         assert_eq!(baseline, exponentials);
     }
 

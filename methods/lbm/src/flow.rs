@@ -7,7 +7,7 @@ use finegrain_framework::Real;
 use finegrain_framework::pack::Pack;
 use num_traits::{One, Zero};
 
-use crate::lattice::{Lattice, SOUND_SPEED_SQUARED};
+use crate::lattice::{self, Lattice, SOUND_SPEED_SQUARED};
 
 /// Density less one, and momentum over density: the velocity before the collision, with nothing of the
 /// force of the step.
@@ -57,12 +57,14 @@ pub(crate) fn stress<L: Lattice<Q>, V: Pack, const Q: usize>(
         stress[1][2] = second::<L, V, Q, 1, 2>(&even);
         stress[2][2] = second::<L, V, Q, 2, 2>(&even);
     }
-    let density = excess + V::Scalar::one();
+    let minus_density = -excess + -V::Scalar::one();
+    let pressure = excess * V::Scalar::of(SOUND_SPEED_SQUARED);
     for a in 0..L::DIMS {
+        let minus_momentum = minus_density * v[a];
         for b in a..L::DIMS {
-            stress[a][b] = stress[a][b] - density * v[a] * v[b];
+            stress[a][b] = minus_momentum.mul_add(v[b], stress[a][b]);
         }
-        stress[a][a] = stress[a][a] + excess * V::Scalar::of(-SOUND_SPEED_SQUARED);
+        stress[a][a] = stress[a][a] - pressure;
     }
     for a in 0..L::DIMS {
         for b in 0..a {
@@ -101,8 +103,9 @@ pub(crate) fn deviator<L: Lattice<Q>, V: Pack, const Q: usize>(
     for a in 1..L::DIMS {
         trace = trace + stress[a][a];
     }
+    let mean = trace * V::Scalar::of(1.0 / L::DIMS as f64);
     for a in 0..L::DIMS {
-        stress[a][a] = stress[a][a] - trace * V::Scalar::of(1.0 / L::DIMS as f64);
+        stress[a][a] = stress[a][a] - mean;
     }
     stress
 }
@@ -142,21 +145,36 @@ pub(crate) fn moments<L: Lattice<Q>, V: Pack, const Q: usize>(f: &[V; Q]) -> (V,
     (sum, momentum)
 }
 
-/// `c . v` of rest and of the first of each pair of velocities.
+/// A vector times the weights of velocities of squared length 1, 2 and 3.
 #[inline(always)]
-pub(crate) fn project<L: Lattice<Q>, V: Pack, const Q: usize>(v: &[V; 3]) -> [V; Q] {
-    let mut along = [v[0].splat_like(V::Scalar::zero()); Q];
-    for a in 0..L::DIMS {
-        for n in 0..Q / 2 {
-            let q = 2 * n + 1;
-            match L::VELOCITIES[q][a] {
-                1 => along[q] = along[q] + v[a],
-                -1 => along[q] = along[q] - v[a],
-                _ => {}
-            }
+pub(crate) fn weighted<L: Lattice<Q>, V: Pack, const Q: usize, const N: usize>(
+    v: &[V; N],
+) -> [[V; N]; 3] {
+    let weights = const {
+        [lattice::weight::<L, Q>(1), lattice::weight::<L, Q>(2), lattice::weight::<L, Q>(3)]
+    };
+    let mut all = [*v; 3];
+    for l in 0..3 {
+        for a in 0..N {
+            all[l][a] = v[a] * V::Scalar::of(weights[l]);
         }
     }
-    along
+    all
+}
+
+/// `c . v` of the first of a pair of velocities, the last component of which that is not zero is one.
+#[inline(always)]
+pub(crate) fn along<V: Pack>(c: [i32; 3], v: &[V; 3]) -> V {
+    let part = |sum: V, a: usize| match c[a] {
+        1 => sum + v[a],
+        -1 => sum - v[a],
+        _ => sum,
+    };
+    match c {
+        [_, _, 1] => part(part(v[2], 1), 0),
+        [_, 1, _] => part(v[1], 0),
+        _ => v[0],
+    }
 }
 
 /// `u . v`.

@@ -96,16 +96,15 @@ fn in_planes<L: Lattice<Q>, V: Pack, const Q: usize>(
     let (mut first, mut whole, mut second) = (*u, *u, *u);
     for a in 0..L::DIMS {
         first[a] = density * u[a];
-        let moved = first[a] * u[a] + s[a][a];
-        whole[a] = moved + density * third;
-        second[a] = moved + excess * third;
+        second[a] = first[a].mul_add(u[a], s[a][a] + excess * third);
+        whole[a] = second[a] + third;
     }
     let mut f = [excess; Q];
     let mut left = Left { rest: excess, even: second, odd: first };
     for a in 0..L::DIMS {
         left.rest = left.rest - second[a];
     }
-    let seen = Seen { density, excess, first, whole };
+    let seen = Seen { excess, first, whole };
     in_plane::<L, V, Q, 0, 1, 2>(&mut f, &mut left, &seen, u, beyond);
     if L::DIMS == 3 {
         in_plane::<L, V, Q, 0, 2, 1>(&mut f, &mut left, &seen, u, beyond);
@@ -122,7 +121,6 @@ fn in_planes<L: Lattice<Q>, V: Pack, const Q: usize>(
 
 /// Moments of each direction as seen from the lattice.
 struct Seen<V> {
-    density: V,
     excess: V,
     first: [V; 3],
     /// Those of second order with that of rest.
@@ -153,16 +151,16 @@ fn in_plane<
     beyond: &Beyond<V>,
 ) {
     let [third, ninth] = [SOUND_SPEED_SQUARED, SOUND_SPEED_SQUARED.powi(2)].map(V::Scalar::of);
-    let [quarter, two, four] = [0.25, 2.0, 4.0].map(V::Scalar::of);
-    let Seen { density, excess, first, whole } = *seen;
+    let [quarter, two] = [0.25, 2.0].map(V::Scalar::of);
+    let Seen { excess, first, whole } = *seen;
     let (s, [ua, ub]) = (&beyond.second, [u[A], u[B]]);
     let both = s[A][B] * two;
-    let ab = first[A] * ub + s[A][B];
-    let aab = ub * whole[A] + ua * both;
-    let abb = ua * whole[B] + ub * both;
-    let about = density * third + s[A][A];
-    let aabb = (ua * ua * whole[B] + ub * ub * about)
-        + (ua * ub * s[A][B] * four + (excess * ninth + beyond.fourth[ACROSS]));
+    let ab = first[A].mul_add(ub, s[A][B]);
+    let aab = ub.mul_add(whole[A], ua * both);
+    let abb = ua.mul_add(whole[B], ub * both);
+    let about = excess * third + s[A][A] + third;
+    let rest = excess * ninth + beyond.fourth[ACROSS];
+    let aabb = ua.mul_add(ub.mul_add(both * two, ua * whole[B]), (ub * ub).mul_add(about, rest));
     left.rest = left.rest + aabb;
     left.even[A] = left.even[A] - aabb;
     left.even[B] = left.even[B] - aabb;

@@ -31,6 +31,18 @@ pub const fn opposite(q: usize) -> usize {
     }
 }
 
+/// Weight of the velocities of a squared length; 0 if there are none.
+pub(crate) const fn weight<L: Lattice<Q>, const Q: usize>(squared: i32) -> f64 {
+    let mut q = 0;
+    while q < Q {
+        if square(L::VELOCITIES[q]) == squared {
+            return L::WEIGHTS[q];
+        }
+        q += 1;
+    }
+    0.0
+}
+
 macro_rules! lattice {
     ($(#[$doc:meta])* $name:ident, $q:literal, $dims:literal, $weights:expr) => {
         $(#[$doc])*
@@ -89,7 +101,8 @@ const fn weights<const Q: usize>(velocities: [[i32; 3]; Q], by_square: &[f64]) -
     all
 }
 
-const fn square(c: [i32; 3]) -> i32 {
+/// Squared length.
+pub(crate) const fn square(c: [i32; 3]) -> i32 {
     c[0] * c[0] + c[1] * c[1] + c[2] * c[2]
 }
 

@@ -6,15 +6,16 @@ use finegrain_framework::pack::Pack;
 
 use super::Collide;
 use crate::flow;
-use crate::lattice::Lattice;
+use crate::lattice::{self, Lattice};
 
 /// Even and odd parts of each pair of opposite populations relax by themselves: the even part with
 /// the relaxation time of the viscosity, the odd one such that
 /// `(tau_even - 1/2) (tau_odd - 1/2)` is the magic parameter, or with the same.
 ///
 /// With the equilibrium (Qian et al. 1992, eq. 3) and the force (Guo, Zheng & Shi 2002, eq. 20) written out,
-/// what a pair gets has few parts that are its own:
-/// `w (even_rate (rho - 1) - u . E / 3 + (c . u) (c . E)) - even_rate f_even +- (w c . O - odd_rate f_odd)`
+/// half the sum and half the difference of what a pair becomes are
+/// `(1 - even_rate) (f + f_back) / 2 + w (even_rate (rho - 1) - u . E / 3 + (c . u) (c . E))` and
+/// `(1 - odd_rate) (f - f_back) / 2 + w c . O`
 /// with `E = rho (9/2 even_rate u + 9 (1 - even_rate / 2) a)` and
 /// `O = rho (3 odd_rate u + 3 (1 - odd_rate / 2) a)`.
 #[derive(Clone, Copy, Debug)]
@@ -59,19 +60,21 @@ impl<T: Real> Collide<T> for Trt {
             odd[a] = (u[a] * odd_velocity + acceleration[a] * odd_force) * T::of(3.0);
         }
         let same = excess * even_rate - flow::product::<L, V, Q>(&u, &even) * third;
-        let u = flow::project::<L, V, Q>(&u);
-        let even = flow::project::<L, V, Q>(&even);
-        let odd = flow::project::<L, V, Q>(&odd);
-        let [even_half, odd_half] = [even_rate * half, odd_rate * half];
+        let even = flow::weighted::<L, V, Q, 3>(&even);
+        let odd = flow::weighted::<L, V, Q, 3>(&odd);
+        let pressure = flow::weighted::<L, V, Q, 1>(&[same]);
+        let [even_kept, odd_kept] = [even_rate, odd_rate].map(|rate| rate * -half + half);
         let mut after = f;
-        after[0] = f[0] + (same * T::of(L::WEIGHTS[0]) - f[0] * even_rate);
+        after[0] = f[0] - f[0] * even_rate + same * T::of(L::WEIGHTS[0]);
         for n in 0..Q / 2 {
             let (q, back) = (2 * n + 1, 2 * n + 2);
-            let weight = T::of(L::WEIGHTS[q]);
-            let even = (same + u[q] * even[q]) * weight - (f[q] + f[back]) * even_half;
-            let odd = odd[q] * weight - (f[q] - f[back]) * odd_half;
-            after[q] = f[q] + (even + odd);
-            after[back] = f[back] + (even - odd);
+            let c = L::VELOCITIES[q];
+            let l = lattice::square(c) as usize - 1;
+            let shift = flow::along(c, &u).mul_add(flow::along(c, &even[l]), pressure[l][0]);
+            let even = (f[q] + f[back]).mul_add(even_kept, shift);
+            let odd = (f[q] - f[back]).mul_add(odd_kept, flow::along(c, &odd[l]));
+            after[q] = even + odd;
+            after[back] = even - odd;
         }
         after
     }
