@@ -41,7 +41,7 @@ pub struct StabilityArguments {
     /// Number of worker threads; all cores by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
-    /// Folder for the table and the picture.
+    /// Folder for the table, the page and the picture; a map that is there already is gone on with
     #[arg(long, default_value = "out/stability")]
     out: PathBuf,
 }
@@ -116,10 +116,16 @@ fn stability(arguments: StabilityArguments) -> Result<(), CommandError> {
         return Err(format!("no case contains {:?}; there are {known}", arguments.case).into());
     }
     let budget = minutes(arguments.budget)?;
-    let plan = stability::Plan { cases, budget, workers: arguments.workers.map(usize::from) };
     make_folder(&arguments.out)?;
+    let memory = arguments.out.join("stability.json");
+    let known = stability::saved(&memory)
+        .map_err(|error| format!("{} is not a map to go on from: {error}", memory.display()))?;
+    let workers = arguments.workers.map(usize::from);
+    let plan = stability::Plan { cases, known, budget, workers };
     let mut out = std::io::stdout().lock();
-    let map = stability::map(&plan, |entry| {
+    let mut unsaved = Ok(());
+    let map = stability::map(&plan, |map| {
+        let Some(entry) = map.entries.last() else { return };
         let courant = entry.largest_courant.map_or_else(String::new, |c| format!(", CFL x {c}"));
         // Only progress: who does not listen misses nothing.
         let _ = writeln!(
@@ -127,7 +133,9 @@ fn stability(arguments: StabilityArguments) -> Result<(), CommandError> {
             "{}, {}: {}{courant} ({:.1} s)",
             entry.case, entry.variant, entry.outcome, entry.wall_s
         );
+        unsaved = map.save(&memory);
     })?;
+    unsaved?;
     for (case, variant) in &map.left_out {
         writeln!(out, "{case}, {variant}: not run, the time was up")?;
     }

@@ -3,18 +3,20 @@
 mod pages;
 
 use std::fmt;
+use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use finegrain_framework::run::Stopped;
+use serde::{Deserialize, Serialize};
 
 use super::hard_cases::{HardCase, Variant};
 use crate::figure::{FigureError, Tile, Tiles, Tone};
 use crate::scene::{Orders, Precision, Report, Scene, SceneError};
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     /// In order, and nothing about it is suspicious.
     Survives,
@@ -38,30 +40,38 @@ impl fmt::Display for Outcome {
 }
 
 /// One variant of one case.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Entry {
     /// Method of the case.
-    pub method: &'static str,
+    pub method: String,
     /// Name of the case.
-    pub case: &'static str,
+    pub case: String,
     /// Name of the variant.
-    pub variant: &'static str,
+    pub variant: String,
     /// How it ended with the scene's own time step.
     pub outcome: Outcome,
     /// Wall-clock time of that run, s.
     pub wall_s: f64,
-    /// Largest of [`COURANT_NUMBERS`], counted from the first, that all survive, where they are tried.
+    /// Largest of [`COURANT_NUMBERS`] that survives, where they are tried.
     pub largest_courant: Option<f64>,
 }
 
-/// Courant numbers that are tried where a method has them, in units of the scene's own.
-pub const COURANT_NUMBERS: [f64; 5] = [1.0, 1.5, 2.0, 3.0, 4.0];
+impl Entry {
+    fn is_of(&self, case: &HardCase, variant: &Variant) -> bool {
+        self.method == case.method && self.case == case.name && self.variant == variant.name
+    }
+}
+
+/// Courant numbers that are tried where a method has them, in units of the scene's own; the last is its own.
+pub const COURANT_NUMBERS: [f64; 5] = [4.0, 3.0, 2.0, 1.5, 1.0];
 
 /// What to run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The cases.
     pub cases: Vec<HardCase>,
+    /// What was found before, and is not run again.
+    pub known: Vec<Entry>,
     /// No run is begun after this time.
     pub budget: Duration,
     /// Number of workers; all cores if `None`.
@@ -77,23 +87,26 @@ pub struct Map {
     pub left_out: Vec<(&'static str, &'static str)>,
 }
 
-/// Runs everything in `plan`; `say` hears of every entry.
+/// Runs everything in `plan` that is not known; `say` hears of the map whenever it has one entry more.
 ///
 /// # Errors
 /// If a case names a scene or parameter that there is not.
-pub fn map(plan: &Plan, mut say: impl FnMut(&Entry)) -> Result<Map, SceneError> {
+pub fn map(plan: &Plan, mut say: impl FnMut(&Map)) -> Result<Map, SceneError> {
     let begun = Instant::now();
     let mut map = Map::default();
     for case in &plan.cases {
         for variant in case.variants {
+            if let Some(known) = plan.known.iter().find(|known| known.is_of(case, variant)) {
+                map.entries.push(known.clone());
+                continue;
+            }
             let left = plan.budget.saturating_sub(begun.elapsed());
             if left.is_zero() {
                 map.left_out.push((case.name, variant.name));
                 continue;
             }
-            let entry = entry(case, variant, plan.workers, left)?;
-            say(&entry);
-            map.entries.push(entry);
+            map.entries.push(entry(case, variant, plan.workers, left)?);
+            say(&map);
         }
     }
     Ok(map)
@@ -110,20 +123,21 @@ fn entry(
     let (outcome, wall_s) = run(case, variant, None, workers, left)?;
     let mut largest_courant = None;
     if let (Some(name), true) = (case.time_step, survives(&outcome)) {
-        largest_courant = Some(COURANT_NUMBERS[0]);
-        for &courant in &COURANT_NUMBERS[1..] {
+        // The longest steps first: they are the fewest, and what blows up ends early.
+        for courant in COURANT_NUMBERS {
             let left = left.saturating_sub(begun.elapsed());
-            if left.is_zero() {
+            if courant == 1.0 || left.is_zero() {
+                largest_courant = Some(1.0);
                 break;
             }
             let (longer, _) = run(case, variant, Some((name, courant)), workers, left)?;
-            if !survives(&longer) {
+            if survives(&longer) {
+                largest_courant = Some(courant);
                 break;
             }
-            largest_courant = Some(courant);
         }
     }
-    let (method, case, variant) = (case.method, case.name, variant.name);
+    let [method, case, variant] = [case.method, case.name, variant.name].map(str::to_owned);
     Ok(Entry { method, case, variant, outcome, wall_s, largest_courant })
 }
 
@@ -175,7 +189,19 @@ fn judge(case: &HardCase, report: &Report) -> Outcome {
 impl Map {
     /// The entries, case by case.
     fn cases(&self) -> impl Iterator<Item = &[Entry]> {
-        self.entries.chunk_by(|a, b| (a.method, a.case) == (b.method, b.case))
+        self.entries.chunk_by(|a, b| (&a.method, &a.case) == (&b.method, &b.case))
+    }
+
+    /// Saves what has been finished, to go on from there another time.
+    ///
+    /// # Errors
+    /// If the file cannot be written; what it held before is still there then.
+    pub fn save(&self, path: &Path) -> io::Result<()> {
+        let is_finished = |entry: &&Entry| entry.outcome != Outcome::Unfinished;
+        let finished: Vec<_> = self.entries.iter().filter(is_finished).collect();
+        let next = path.with_extension("part");
+        serde_json::to_writer_pretty(File::create(&next)?, &finished)?;
+        fs::rename(next, path)
     }
 
     /// Writes the map as CSV.
@@ -206,9 +232,21 @@ impl Map {
             .legend(Tone::Bad, "blows up")
             .legend(Tone::Unknown, "not finished");
         for row in self.cases() {
-            tiles = tiles.row(row[0].case, row.iter().map(tile));
+            tiles = tiles.row(&row[0].case, row.iter().map(tile));
         }
         tiles.save(path)
+    }
+}
+
+/// What [`Map::save`] saved; nothing if there is no such file.
+///
+/// # Errors
+/// If the file cannot be read, or holds something else.
+pub fn saved(path: &Path) -> io::Result<Vec<Entry>> {
+    match File::open(path) {
+        Ok(file) => Ok(serde_json::from_reader(io::BufReader::new(file))?),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(error),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::report::page::Page;
 impl Map {
     /// The page; `command` made it.
     pub fn page(&self, command: String) -> Page {
-        let mut methods: Vec<_> = self.entries.iter().map(|entry| entry.method).collect();
+        let mut methods: Vec<_> = self.entries.iter().map(|entry| entry.method.as_str()).collect();
         methods.dedup();
         let body = html! {
             ul.legend {
@@ -45,8 +45,8 @@ impl Map {
         let of = || self.entries.iter().filter(|entry| entry.method == method);
         let mut variants: Vec<&str> = Vec::new();
         for entry in of() {
-            if !variants.contains(&entry.variant) {
-                variants.push(entry.variant);
+            if !variants.contains(&entry.variant.as_str()) {
+                variants.push(&entry.variant);
             }
         }
         let tally = |variant: &str| {
@@ -98,10 +98,12 @@ fn tile(entry: &Entry) -> Markup {
 
 #[cfg(test)]
 mod tests {
+    use super::super::saved;
     use super::*;
 
-    fn entry(case: &'static str, variant: &'static str, outcome: Outcome) -> Entry {
-        Entry { method: "sph", case, variant, outcome, wall_s: 1.0, largest_courant: None }
+    fn entry(case: &str, variant: &str, outcome: Outcome) -> Entry {
+        let [method, case, variant] = ["sph", case, variant].map(str::to_owned);
+        Entry { method, case, variant, outcome, wall_s: 1.0, largest_courant: None }
     }
 
     #[test]
@@ -125,5 +127,25 @@ mod tests {
         let page = map.page(String::new()).body.into_string();
         assert!(page.contains("voids") && page.contains("&lt;nan&gt;") && page.contains("tank"));
         assert_eq!(page.matches("<h3>").count(), 2);
+    }
+
+    /// A saved map is what it was, but for what was not finished.
+    #[test]
+    fn a_map_is_gone_on_with() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.json");
+        assert!(saved(&path).unwrap().is_empty());
+        let wrong = Outcome::Wrong(vec!["voids, \"many\"".into()]);
+        let entries = vec![
+            Entry { largest_courant: Some(1.5), ..entry("patch", "plain", wrong) },
+            entry("dam", "plain", Outcome::BlowsUp("NaN".into())),
+            entry("dam", "shifting", Outcome::Unfinished),
+        ];
+        let map = Map { entries, left_out: Vec::new() };
+        map.save(&path).unwrap();
+        let again = saved(&path).unwrap();
+        assert_eq!(format!("{again:?}"), format!("{:?}", &map.entries[..2]));
+        std::fs::write(&path, "[{").unwrap();
+        assert!(saved(&path).is_err());
     }
 }
