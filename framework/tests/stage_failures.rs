@@ -306,10 +306,14 @@ fn a_stage_that_is_parallel_inside() {
 }
 
 #[test]
-fn no_workers_are_refused() {
-    for schedule in [Schedule::Lockstep, Schedule::PeerToPeer, Schedule::ForkJoin] {
+fn no_workers_are_refused_but_where_there_is_always_one() {
+    for schedule in Schedule::ALL {
         let settings = Settings { schedule, workers: 0, ..Settings::default() };
         let model = ring(|_, _| Ok(()), |_, _| Ok(()));
+        if schedule == Schedule::Serial {
+            Simulation::new(model, settings).unwrap().advance(3).unwrap();
+            continue;
+        }
         let error = Simulation::new(model, settings).err().expect("nobody would do the work");
         assert!(error.to_string().contains("worker"), "{error}");
     }

@@ -4,7 +4,7 @@ use loom::cell::UnsafeCell;
 use loom::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::domain::{Partition, Span};
-use crate::leg::Work;
+use crate::schedule::Work;
 
 /// A rate part and an update part on a row of sub-domains of one point each.
 ///
