@@ -197,6 +197,26 @@ fn blocks_have_about_the_points_asked_for() {
     }
 }
 
+/// One that has flown away does not make the blocks of all others larger.
+#[test]
+fn blocks_where_most_of_the_box_is_empty() {
+    let drop = scattered(&mut Random(11), 5_000, &[0.0; 2], &[25.0; 2]);
+    for far in [[30.0, 0.0], [800.0, 10.0], [1e4, -1e4]] {
+        for periodic in [false, true] {
+            let (lower, upper) = ([0.0, -1.1e4], [1.1e4, 25.0]);
+            let mut options = options(&lower, &upper, &[periodic; 2], 1.0, 0.0);
+            options.block_points = 100;
+            let points: Vec<_> = drop.iter().cloned().chain([far.to_vec()]).collect();
+            let mut case = Case::<f64>::new(options, &points);
+            case.sort(2).unwrap();
+            let partition = case.cells.partition();
+            let largest = (0..partition.len()).map(|id| partition.piece(id).points()).max();
+            assert!(largest.unwrap() < 300, "{largest:?} points in a block, one at {far:?}");
+            assert!(partition.len() < 100, "{} blocks, one at {far:?}", partition.len());
+        }
+    }
+}
+
 #[test]
 fn a_position_that_is_not_finite_is_named() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -205,7 +225,10 @@ fn a_position_that_is_not_finite_is_named() {
             let mut points = scattered(&mut Random(8), 50, &[0.0; 2], &[6.0; 2]);
             points[17][1] = bad;
             let fault = Case::<f64>::new(options, &points).sort(2).unwrap_err().to_string();
-            assert!(fault.contains("particle 17") && fault.contains("direction 1"), "{fault}");
+            assert!(
+                fault.contains("particle at place 17") && fault.contains("direction 1"),
+                "{fault}"
+            );
         }
     }
 }
