@@ -52,7 +52,7 @@ fn a_row_of_a_history_is_whole_or_not_there() {
 fn histories_on_a_full_disk() {
     let Some(folder) = std::env::var_os(FOLDER) else { return };
     let run = run(Path::new(&folder));
-    let columns = ["step", "zero"];
+    let columns = ["number", "zero"];
     let failed = run
         .monitor("steps", Every::Steps(1), columns, |whole| [whole.step as f64, 0.0])
         .run()

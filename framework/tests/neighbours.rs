@@ -193,7 +193,8 @@ fn blocks_have_about_the_points_asked_for() {
         let mut case = Case::<f64>::new(options, &points);
         case.sort(1).unwrap();
         let mean = 60_000 / case.cells.partition().len();
-        assert!((50..=200).contains(&mean), "{mean} points a block in a box of {x} x {y} x {z}");
+        // Of cells that hold one on average by chance, a third are empty and not counted.
+        assert!((40..=200).contains(&mean), "{mean} points a block in a box of {x} x {y} x {z}");
     }
 }
 
@@ -300,9 +301,9 @@ fn drift_past_half_the_skin_is_an_error_that_names_the_particle() {
         run_away(settings.clone(), 41, 0.14 / 20.0).unwrap();
         let error = run_away(settings.clone(), 41, 0.03).unwrap_err();
         assert_eq!(error.step, 5, "{error}");
-        assert!(error.to_string().contains("particle 41"), "{error}");
+        assert!(error.to_string().contains("particle at place 41"), "{error}");
         let error = run_away(settings, 41, f64::NAN).unwrap_err();
-        assert!(error.to_string().contains("particle 41"), "{error}");
+        assert!(error.to_string().contains("particle at place 41"), "{error}");
     }
 }
 

@@ -42,7 +42,7 @@ pub struct CellsOptions {
     pub range: f64,
     /// How much further cells see, to sort less often; in the unit of `range`.
     pub skin: f64,
-    /// A block has at least about so many particles.
+    /// A block inside what is filled has about so many particles.
     pub block_points: usize,
 }
 
