@@ -1,16 +1,19 @@
-//! Time, computed from the number of the step and never accumulated.
+//! Time, computed from the number of the step; no rounding adds up.
 
 use crate::stage::Moment;
 
 /// Where a run is in time.
 ///
 /// While the time step stays the same, step `n` begins at `origin_time + (n - origin_step) dt`:
-/// one rounding, however many steps. A step that is to hit a given time does so exactly.
+/// one rounding, however many steps. Where the time step changes, the origin moves, and what its
+/// rounding leaves over is kept. A step that is to hit a given time does so exactly.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Clock {
     step: u64,
     origin_step: u64,
     origin_time: f64,
+    /// What rounding has left over of the origin's time.
+    origin_rest: f64,
     dt: f64,
     /// A step that begins at a given time, whatever rounding would make of it.
     aim: Option<(u64, f64)>,
@@ -19,7 +22,7 @@ pub struct Clock {
 impl Clock {
     /// Step 0 at time 0.
     pub fn new(dt: f64) -> Self {
-        Self { step: 0, origin_step: 0, origin_time: 0.0, dt, aim: None }
+        Self { step: 0, origin_step: 0, origin_time: 0.0, origin_rest: 0.0, dt, aim: None }
     }
 
     /// Number of steps done.
@@ -44,7 +47,7 @@ impl Clock {
         {
             return time;
         }
-        self.origin_time + (step as f64 - self.origin_step as f64) * self.dt
+        self.origin_time + (self.steps_since_origin(step) * self.dt + self.origin_rest)
     }
 
     /// The moment of a stage at `t + c dt` of step `step`.
@@ -56,10 +59,31 @@ impl Clock {
     /// Goes on with another time step; the origin moves here only if it differs.
     pub fn set_dt(&mut self, dt: f64) {
         if dt != self.dt {
-            self.origin_time = self.time();
-            self.origin_step = self.step;
+            self.move_origin();
             self.dt = dt;
         }
+    }
+
+    /// The present step becomes the origin.
+    fn move_origin(&mut self) {
+        let time = self.time();
+        if self.aim == Some((self.step, time)) {
+            self.origin_rest = 0.0;
+        } else {
+            // The rounding errors of product and sum, without error (Dekker 1971, Knuth's TAOCP 4.2.2).
+            let steps = self.steps_since_origin(self.step);
+            let span = steps * self.dt;
+            let sum = self.origin_time + span;
+            let added = sum - self.origin_time;
+            let of_sum = (self.origin_time - (sum - added)) + (span - added);
+            let rest = of_sum + (steps.mul_add(self.dt, -span) + self.origin_rest);
+            self.origin_rest = (sum - time) + rest;
+        }
+        (self.origin_time, self.origin_step) = (time, self.step);
+    }
+
+    fn steps_since_origin(&self, step: u64) -> f64 {
+        step as f64 - self.origin_step as f64
     }
 
     /// The step that follows `steps` more begins at `time`, which is what the time step gives but
@@ -87,6 +111,26 @@ mod tests {
         clock.advance(2);
         assert_eq!(clock.time(), 100_000.5);
         assert_eq!(clock.moment(clock.step(), 0.5).stage_time, 100_000.625);
+    }
+
+    /// Against sums of whole numbers of 2^-60.
+    #[test]
+    fn a_time_step_that_changes_rounds_once_too() {
+        let mut clock = Clock::new(0.0);
+        let mut exact = 0_i128;
+        for pace in 0..100_000_u64 {
+            let (unit, steps) = ((1 << 52) + pace.wrapping_mul(0x9e37_79b9) % (1 << 51), pace % 7);
+            clock.set_dt(unit as f64 * 0.5_f64.powi(60));
+            clock.advance(steps);
+            exact += i128::from(unit * steps);
+            let exact = exact as f64 * 0.5_f64.powi(60);
+            assert!((clock.time() - exact).abs() <= f64::EPSILON * exact, "after pace {pace}");
+        }
+        let end = clock.time() + 0.1;
+        clock.aim(3, end);
+        clock.advance(3);
+        clock.set_dt(0.25);
+        assert_eq!((clock.time(), clock.origin_rest), (end, 0.0));
     }
 
     #[test]

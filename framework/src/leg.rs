@@ -1,133 +1,23 @@
 //! A leg: what the workers run without coming back to the caller, a number of steps or a stretch of one.
 
-use std::any::Any;
 use std::cell::Cell;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError, TryLockError};
+use std::sync::{Mutex, PoisonError};
 
-use crate::activity::Activities;
 use crate::clock::Clock;
-use crate::columns::{ColumnId, Columns, Role};
+use crate::columns::Columns;
+use crate::desk::{Desk, Scratch};
 use crate::domain::{Domain, Partition};
+use crate::failure::{Cause, Failure};
 use crate::pack::Fence;
+use crate::panic_message::panic_message;
+use crate::schedule::Work;
 use crate::stage::Fault;
-use crate::step::{Entry, Step, Stretch};
+use crate::step::{Entry, Step};
 use crate::trace::{Event, Trace};
-use crate::view::{Near, Own, Place, Rates, Shifts, Slot, slots_of};
-
-/// What went wrong in a leg, and where.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Failure {
-    /// Number of the step.
-    pub step: u64,
-    /// Place of the part in the step.
-    pub part: usize,
-    /// Name of the stage.
-    pub stage: String,
-    /// Number of the sub-domain; `None` for whole-domain work.
-    pub sub_domain: Option<usize>,
-    /// Why.
-    pub cause: Cause,
-}
-
-/// Why a stage of a sub-domain ended a run.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Cause {
-    /// The stage said so.
-    #[error("{0}")]
-    Fault(#[from] Fault),
-    /// The stage panicked.
-    #[error("the stage panicked: {0}")]
-    Panic(String),
-    /// A state column holds NaN or infinity.
-    #[error("column {column:?} holds a value that is not finite")]
-    NotFinite {
-        /// Name of the column.
-        column: String,
-    },
-}
-
-/// Work cut into parts and sub-domains: all that a schedule knows.
-pub(crate) trait Work: Sync {
-    /// Number of parts of a step.
-    fn parts(&self) -> usize;
-    /// Ownership and neighbourhood.
-    fn partition(&self) -> &Partition;
-    /// Numbers of the steps to run.
-    fn steps(&self) -> Range<u64>;
-    /// Runs one part of one step of one sub-domain; never unwinds.
-    fn run(&self, worker: usize, step: u64, part: usize, sub_domain: usize);
-    /// Whether something failed, so that the rest need not be run.
-    fn failed(&self) -> bool;
-}
-
-/// Working memory of one worker, for every stage of a step.
-type Scratch = Vec<Box<dyn Any + Send>>;
-
-fn scratch_for<D: Domain>(step: &Step<D>) -> Scratch {
-    step.stages.iter().map(|stage| stage.scratch()).collect()
-}
-
-/// Memory that legs reuse, so that a leg does not allocate.
-pub(crate) struct Desk {
-    /// Every worker has its own: the locks are never contended.
-    scratch: Vec<Mutex<Scratch>>,
-    slots: Vec<Slot>,
-    /// Per set of swapped pairs that occurs, the slots in that order.
-    tables: Vec<(u64, Vec<Slot>)>,
-    checked: Vec<ColumnId>,
-    pub activities: Activities,
-}
-
-impl Desk {
-    /// Memory for the legs of `step` on `workers` workers.
-    ///
-    /// # Panics
-    /// If the step swaps columns of different types: its handles belong to other columns.
-    pub fn new<D: Domain>(step: &Step<D>, columns: &Columns, workers: usize) -> Self {
-        for &(a, b) in &step.pairs {
-            let kinds = [a, b].map(|id| columns.column(id).kind());
-            assert_eq!(kinds[0], kinds[1], "columns {a:?} and {b:?} are swapped");
-        }
-        let scratch = (0..workers).map(|_| Mutex::new(scratch_for(step))).collect();
-        let mut keys = Vec::new();
-        for stretch in &step.stretches {
-            let Stretch::Parts(parts) = stretch else { continue };
-            let base = step.swapped_before_part(parts.start);
-            for parity in [0, step.swapped] {
-                let entries = (0..step.entries.len()).map(Some).chain([None]);
-                keys.extend(entries.map(|e| base ^ parity ^ step.swapped_before(e)));
-            }
-        }
-        keys.sort_unstable();
-        keys.dedup();
-        Self {
-            scratch,
-            slots: Vec::new(),
-            tables: keys.into_iter().map(|key| (key, Vec::new())).collect(),
-            checked: columns
-                .iter()
-                .filter(|(_, c)| c.role() == Role::State)
-                .map(|(id, _)| id)
-                .collect(),
-            activities: Activities::new(workers),
-        }
-    }
-
-    fn lay_out<D: Domain>(&mut self, step: &Step<D>, columns: &mut Columns) {
-        slots_of(columns, &mut self.slots);
-        for (key, table) in &mut self.tables {
-            table.clone_from(&self.slots);
-            for (k, (a, b)) in step.pairs.iter().enumerate() {
-                if *key >> k & 1 == 1 {
-                    table.swap(a.0 as usize, b.0 as usize);
-                }
-            }
-        }
-    }
-}
+use crate::view::{Near, Own, Place, Rates, Shifts};
 
 /// What is looked at while a leg runs.
 #[derive(Clone, Copy, Default)]
@@ -163,8 +53,9 @@ pub(crate) struct Leg<'a, D: Domain> {
 impl<'a, D: Domain> Leg<'a, D> {
     /// A leg of some steps, or of a stretch of one.
     ///
-    /// # Panics
-    /// If the partition is not sealed or has other points than the columns.
+    /// # Errors
+    /// If the partition is not sealed or has other points than the columns: whoever divided space
+    /// did not notice that it had failed.
     pub fn new(
         domain: &'a D,
         columns: &'a mut Columns,
@@ -173,17 +64,21 @@ impl<'a, D: Domain> Leg<'a, D> {
         clock: &'a Clock,
         stint: Stint,
         watch: Watch<'a>,
-    ) -> Self {
+    ) -> Result<Self, Fault> {
         let partition = domain.partition();
-        assert!(partition.is_sealed(), "the domain's partition is not sealed");
-        assert_eq!(
-            partition.points(),
-            columns.points(),
-            "the domain and the columns have different numbers of points"
-        );
+        if !partition.is_sealed() {
+            return Err(Fault::new("the domain's partition is not sealed"));
+        }
+        if partition.points() != columns.points() {
+            return Err(Fault::new(format!(
+                "the domain has {} points, the columns have {}",
+                partition.points(),
+                columns.points()
+            )));
+        }
         desk.lay_out(step, columns);
         columns.notebook_mut().resize(partition.len());
-        Self {
+        Ok(Self {
             domain,
             partition,
             columns,
@@ -195,7 +90,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             past_caches: false,
             failed: AtomicBool::new(false),
             failure: Mutex::new(None),
-        }
+        })
     }
 
     /// Lets rate stages write past the caches, or not.
@@ -226,9 +121,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         let odd = (step - self.stint.steps.start) % 2 == 1;
         let parity = if odd { self.step.swapped } else { 0 };
         let base = self.step.swapped_before_part(self.stint.parts.start);
-        let key = base ^ parity ^ self.step.swapped_before(entry);
-        let tables = &self.desk.tables;
-        let table = tables.iter().find(|(k, _)| *k == key).expect("all keys are laid out");
+        let swapped = base ^ parity ^ self.step.swapped_before(entry);
         let shifts = match entry {
             Some(entry) => self.step.stages[self.step.entries[entry].stage].shifts(),
             None => Shifts::NONE,
@@ -237,22 +130,11 @@ impl<'a, D: Domain> Leg<'a, D> {
             domain: self.domain,
             partition: self.partition,
             id,
-            slots: &table.1,
+            slots: self.desk.slots(swapped),
             shifts,
             displaced: self.step.displaced,
             notebook: self.columns.notebook(),
             activity: self.desk.activities.of(worker),
-        }
-    }
-
-    /// Hands `task` the worker's scratch, one for each stage.
-    fn with_scratch<R>(&self, worker: usize, task: impl FnOnce(&mut Scratch) -> R) -> R {
-        match self.desk.scratch[worker].try_lock() {
-            Ok(mut scratch) => task(&mut scratch),
-            Err(TryLockError::Poisoned(scratch)) => task(&mut scratch.into_inner()),
-            // A stage that is itself parallel waits, and rayon runs another sub-domain on its
-            // thread meanwhile: that one needs a scratch of its own.
-            Err(TryLockError::WouldBlock) => task(&mut scratch_for(self.step)),
         }
     }
 
@@ -265,7 +147,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         sub_domain: usize,
         at: &Cell<usize>,
     ) -> Result<(), Cause> {
-        self.with_scratch(worker, |scratch| {
+        self.desk.with_scratch(self.step, worker, |scratch| {
             for entry in self.step.part_start[part]..self.step.part_start[part + 1] {
                 at.set(entry);
                 self.run_entry(worker, scratch, step, entry, sub_domain)?;
@@ -383,21 +265,5 @@ impl<D: Domain> Work for Leg<'_, D> {
 
     fn failed(&self) -> bool {
         self.failed.load(Ordering::Acquire)
-    }
-}
-
-/// What a panic said.
-pub(crate) fn panic_message(panic: Box<dyn Any + Send>) -> String {
-    let message = match panic.downcast::<String>() {
-        Ok(message) => return *message,
-        Err(panic) => panic,
-    };
-    match message.downcast::<&str>() {
-        Ok(message) => (*message).to_owned(),
-        Err(payload) => {
-            // Whatever it is, dropping it might panic once more.
-            std::mem::forget(payload);
-            "no message".to_owned()
-        }
     }
 }

@@ -21,9 +21,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::activity::Activities;
 use crate::clock::Clock;
 use crate::columns::{Column, Columns, Role};
+use crate::desk::Desk;
 use crate::domain::Domain;
+use crate::failure::{Cause, Failure};
 use crate::integrator::Plan;
-use crate::leg::{Cause, Desk, Failure, Watch, panic_message};
+use crate::leg::Watch;
+use crate::panic_message::panic_message;
 use crate::schedule::{Executor, Schedule};
 use crate::stage::Fault;
 use crate::trace::Trace;
@@ -76,7 +79,7 @@ impl<D: Domain> Simulation<D> {
             Trace::new(parts, executor.team().workers(), settings.trace)
         });
         Ok(Self {
-            desk: Desk::new(&model.plan.step, &model.columns, settings.workers),
+            desk: Desk::new(&model.plan.step, &model.columns, executor.team().workers()),
             executor,
             model,
             partials: Partials::default(),
@@ -126,8 +129,9 @@ impl<D: Domain> Simulation<D> {
         &self.settings
     }
 
-    /// Shortens the last steps so that one ends at `time` exactly, or, if the pacing does not allow
-    /// it, ends a pace with the first step that reaches it; `None` for no end. Steps go on past the
+    /// Shortens the steps of the last pace, all alike, so that one ends at `time` exactly: a
+    /// [`crate::FixedPace`] is a single one, so that all steps from here on are shortened. If the pacing
+    /// does not allow it, ends a pace with the first step that reaches it; `None` for no end. Steps go on past the
     /// end if asked for.
     ///
     /// Part of what is computed, unlike the points at which a run is cut into calls of
@@ -198,7 +202,8 @@ impl<D: Domain> Simulation<D> {
     /// Advances by `steps` steps.
     ///
     /// # Errors
-    /// If a stage fails, panics or leaves a value that is not finite. The state is then that of
+    /// If a stage fails, panics or leaves a value that is not finite, or if whoever divided space anew
+    /// left a partition that is not sealed or has other points than the columns. The state is then that of
     /// no step in particular; go back to the last checkpoint.
     pub fn advance(&mut self, steps: u64) -> Result<(), RunError> {
         let mut left = steps;

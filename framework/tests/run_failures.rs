@@ -178,6 +178,15 @@ fn a_dump_that_cannot_be_written() {
     assert_whole(folder.path());
 }
 
+/// What a run that was killed has left half written goes when the next one begins.
+#[test]
+fn leftovers_of_a_killed_run() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(".checkpoint-000000003.ckpt.17-2.part"), "half").unwrap();
+    plan(&HEAT, settings(1), folder.path()).until(TEN_STEPS).run().unwrap();
+    assert_whole(folder.path());
+}
+
 /// The first checkpoint is good and stays so when the second cannot be written.
 #[test]
 fn a_checkpoint_that_cannot_be_written() {

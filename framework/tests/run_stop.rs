@@ -32,6 +32,23 @@ fn at_a_time_to_the_bit() {
     }
 }
 
+/// Of a method with a fixed time step all steps are made shorter, alike: integrators that look back
+/// several steps rely on that.
+#[test]
+fn at_a_time_that_no_whole_number_of_steps_reaches() {
+    let start = || Simulation::new((LEAPFROG.model)(), settings(1)).unwrap();
+    let mut free = start();
+    free.begin().unwrap();
+    let end = 40.5 * free.clock().dt();
+    let mut bound = start();
+    bound.end_at(end);
+    for _ in 0..41 {
+        bound.advance(1).unwrap();
+        assert_eq!(bound.clock().dt(), end / 41.0);
+    }
+    assert_eq!(bound.clock().time(), end);
+}
+
 #[test]
 fn without_wall_clock_time_at_once() {
     let folder = tempfile::tempdir().unwrap();

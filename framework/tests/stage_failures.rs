@@ -251,6 +251,63 @@ fn a_panic_inside_a_reduction() {
     assert_eq!(error, expected_in_whole("summing", Cause::Panic("no".to_owned())));
 }
 
+/// A domain that can be divided anew.
+struct Divided(Partition);
+
+impl Domain for Divided {
+    type SubDomain<'a> = Piece<'a>;
+
+    fn partition(&self) -> &Partition {
+        &self.0
+    }
+
+    fn sub_domain(&self, id: usize) -> Piece<'_> {
+        self.0.piece(id)
+    }
+}
+
+/// Four points, which `divide` divides anew when it is time.
+fn divided_by(divide: fn(&mut Partition)) -> Model<Divided> {
+    let mut partition = Partition::new(4);
+    partition.push([Span { start: 0, end: 4 }], []);
+    partition.seal().unwrap();
+    let mut columns = Columns::new(4);
+    columns.state::<f64>("level");
+    let idle = update_stage("idle", |_, _| Ok(()));
+    let step = Step::builder().stage_at(0.0, &idle).build();
+    let mut model = Model::with_fixed_dt("ring", Divided(partition), columns, step, 0.25);
+    model.whole = vec![whole_stage("dividing", move |whole: &mut Whole<'_, Divided>| {
+        if whole.step == STEP {
+            divide(&mut whole.domain.0);
+        }
+        Ok(())
+    })];
+    model.pacing = pacing(|_: &mut Whole<'_, Divided>| Ok(Pace { dt: 0.25, steps: 2 }));
+    model
+}
+
+#[test]
+fn a_division_of_space_that_went_wrong() {
+    let torn = error_of(|| {
+        divided_by(|partition| {
+            partition.push([Span { start: 3, end: 5 }], []);
+            // Whoever divides should have looked at this.
+            let _ = partition.seal();
+        })
+    });
+    let fault = Fault::new("the domain's partition is not sealed");
+    assert_eq!(torn, expected_in_whole("division of space", Cause::Fault(fault)));
+    let short = error_of(|| {
+        divided_by(|partition| {
+            partition.clear(3);
+            partition.push([Span { start: 0, end: 3 }], []);
+            partition.seal().unwrap();
+        })
+    });
+    let fault = Fault::new("the domain has 3 points, the columns have 4");
+    assert_eq!(short, expected_in_whole("division of space", Cause::Fault(fault)));
+}
+
 #[test]
 fn a_fault_or_a_panic_in_step_control() {
     let idle = || whole_stage("idle", |_| Ok(()));
@@ -306,10 +363,14 @@ fn a_stage_that_is_parallel_inside() {
 }
 
 #[test]
-fn no_workers_are_refused() {
-    for schedule in [Schedule::Lockstep, Schedule::PeerToPeer, Schedule::ForkJoin] {
+fn no_workers_are_refused_but_where_there_is_always_one() {
+    for schedule in Schedule::ALL {
         let settings = Settings { schedule, workers: 0, ..Settings::default() };
         let model = ring(|_, _| Ok(()), |_, _| Ok(()));
+        if schedule == Schedule::Serial {
+            Simulation::new(model, settings).unwrap().advance(3).unwrap();
+            continue;
+        }
         let error = Simulation::new(model, settings).err().expect("nobody would do the work");
         assert!(error.to_string().contains("worker"), "{error}");
     }

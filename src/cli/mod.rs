@@ -5,6 +5,7 @@ pub mod report;
 pub mod run;
 pub mod scene_file;
 pub mod scenes;
+pub mod signals;
 
 /// Whatever ends a command; its message is for the user.
 pub type CommandError = Box<dyn std::error::Error>;

@@ -2,7 +2,6 @@
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -17,6 +16,7 @@ use serde::Serialize;
 
 use super::CommandError;
 use super::scene_file::SceneFile;
+use super::signals::Requests;
 
 /// Arguments of `finegrain run`.
 #[derive(Args)]
@@ -42,7 +42,8 @@ pub struct RunArguments {
     /// End after so many steps, counted from time 0; without this and --until a scene ends by itself.
     #[arg(long)]
     steps: Option<u64>,
-    /// End at this time, in seconds, counted from time 0; the last steps are made shorter to hit it.
+    /// End at this time, in seconds, counted from time 0; steps are made a little shorter to hit it:
+    /// the last ones, or all of a method with a fixed time step.
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// End after so many seconds of wall-clock time, in order; --restart goes on from there.
@@ -57,7 +58,7 @@ pub struct RunArguments {
     #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
     dump_every: Option<u64>,
     /// Write OUT/checkpoint-STEP.ckpt every so many steps (needs --out), and keep the last three. One
-    /// is always written at the end, Ctrl-C included.
+    /// is always written at the end, Ctrl-C and SIGTERM included, and (with --out) whenever SIGUSR1 comes.
     #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
     checkpoint_every: Option<u64>,
     /// Write which worker ran which sub-domain's which stage when, the last 200,000 parts of each
@@ -128,9 +129,13 @@ A scene file is TOML; all but the scene's name may be left out:
     resolution = 100
     kernel = \"quintic-spline\"
 
-What the command line says goes over it. Exit code: 0 when the run ended in order (Ctrl-C
-included), 1 after an error (an unknown scene or parameter, a value out of its range, and whatever ends
-a run too early), 2 for options that do not exist or cannot be read, 130 after a second Ctrl-C.";
+What the command line says goes over it.
+
+Signals: Ctrl-C and SIGTERM end the run in order, with a checkpoint if there is --out; a second one ends
+the process. SIGUSR1 asks for a checkpoint, and the run goes on: kill -USR1 PID.
+
+Exit code: 0 when the run ended in order (Ctrl-C and SIGTERM included), 1 after an error (an unknown scene or parameter, a value out of its range, and whatever ends
+a run too early), 2 for options that do not exist or cannot be read, 130 after a second Ctrl-C or SIGTERM.";
 
 /// The checkpoint with the largest number in a folder.
 fn last_checkpoint(folder: &Path) -> Option<String> {
@@ -176,14 +181,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
             .map_err(|why| format!("cannot write trace `{}`: {why}", path.display()))?;
     }
 
-    let (stop, stops) = Port::unbounded("stop");
-    // The first Ctrl-C ends the run in order, the second ends the process.
-    let asked = AtomicBool::new(false);
-    ctrlc::set_handler(move || {
-        if asked.swap(true, Ordering::Relaxed) || stop.post(()).is_err() {
-            std::process::exit(130);
-        }
-    })?;
+    let requests = Requests::listen()?;
     if let (Some(out), None) = (&arguments.out, &arguments.restart)
         && let Some(name) = last_checkpoint(out)
     {
@@ -205,7 +203,8 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         trace: arguments.trace,
         restart: arguments.restart,
         progress: bar.as_ref().map(|bar| bar.port.clone()),
-        stops: Some(stops),
+        stops: Some(requests.stops),
+        checkpoint_requests: Some(requests.checkpoints),
     };
     let workers = orders.settings().workers;
     let points = prepared.points();

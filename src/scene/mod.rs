@@ -98,6 +98,8 @@ pub struct Orders {
     pub progress: Option<Port<Progress>>,
     /// Where a request to stop comes from.
     pub stops: Option<Inbox<()>>,
+    /// Where requests for a checkpoint come from; without a folder nobody asks there.
+    pub checkpoint_requests: Option<Inbox<()>>,
 }
 
 /// The last parts of each worker that a trace shows.
@@ -134,6 +136,9 @@ impl Orders {
             // One at the end in any case, so that every run can be taken up again.
             let every = Every::Steps(self.checkpoint_every.unwrap_or(u64::MAX));
             run = run.out(out).dump(dump).checkpoint(every, 3);
+            if let Some(requests) = self.checkpoint_requests {
+                run = run.checkpoint_on(requests);
+            }
         }
         if let Some(restart) = self.restart {
             run = run.restart_from(restart);

@@ -21,7 +21,11 @@ pub struct Meeting {
 impl Meeting {
     /// A meeting of `members` workers. They spin for a moment before they sleep only if every
     /// one of them can have a core of its own.
+    ///
+    /// # Panics
+    /// If `members` is 0.
     pub fn new(members: usize) -> Self {
+        assert!(members > 0, "a meeting needs at least one member");
         Self {
             members,
             spin: members <= super::cores(),

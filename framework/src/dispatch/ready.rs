@@ -59,7 +59,11 @@ impl ReadyDispatch {
         self.closed.store(values == 0, Ordering::Relaxed);
     }
 
-    /// Puts a ready value where `server`'s worker will take it first.
+    /// Puts a ready value where `server`'s worker will take it first. No more values may be ready at
+    /// once than were announced to [`ReadyDispatch::open`]: there is room for so many.
+    ///
+    /// # Panics
+    /// In debug builds, if there are more; in others, values are lost.
     #[inline]
     pub fn offer(&self, server: &mut Server, value: u32) {
         self.ready[server.worker].push(value);

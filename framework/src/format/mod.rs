@@ -38,6 +38,7 @@ mod xml;
 
 pub use array::Array;
 pub use atomic_file::AtomicFile;
+pub(crate) use atomic_file::remove_abandoned;
 pub use error::FormatError;
 pub use pvd::Pvd;
 pub use values::{Element, Kind, Values};

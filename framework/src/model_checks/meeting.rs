@@ -1,5 +1,7 @@
 //! A meeting: nobody leaves before all have arrived, all see what all did.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
 use loom::cell::UnsafeCell;
 use loom::sync::Arc;
 use loom::thread;
@@ -19,6 +21,23 @@ unsafe impl Sync for Room {}
 unsafe impl Send for Room {}
 
 impl Room {
+    /// A meeting whose last to arrive panics once it has written the minutes; whether that was this one.
+    fn attend_panic(&self, round: usize) -> bool {
+        let arrive = || {
+            self.meeting.arrive(|| {
+                // SAFETY: all others wait.
+                self.minutes.with_mut(|minutes| unsafe { *minutes += 1 });
+                resume_unwind(Box::new(round));
+            });
+        };
+        let panicked = catch_unwind(AssertUnwindSafe(arrive)).is_err();
+        // SAFETY: nobody writes before the next meeting.
+        let minutes = self.minutes.with(|minutes| unsafe { *minutes });
+        assert_eq!(minutes, round);
+        self.meeting.arrive(|| {});
+        panicked
+    }
+
     /// In every round each member writes its seat, the last to arrive writes the minutes, and
     /// then all read everything.
     fn attend(&self, member: usize, rounds: usize) {
@@ -41,12 +60,16 @@ impl Room {
     }
 }
 
-fn meet(members: usize, rounds: usize) {
-    let room = Arc::new(Room {
+fn room(members: usize) -> Arc<Room> {
+    Arc::new(Room {
         meeting: Meeting::new(members),
         seats: (0..members).map(|_| UnsafeCell::new(0)).collect(),
         minutes: UnsafeCell::new(0),
-    });
+    })
+}
+
+fn meet(members: usize, rounds: usize) {
+    let room = room(members);
     let others: Vec<_> = (1..members)
         .map(|member| {
             let room = room.clone();
@@ -65,4 +88,34 @@ fn two_members_again_and_again() {
 #[test]
 fn three_members() {
     check(Some(2), || meet(3, 1));
+}
+
+/// The others leave as if nothing had happened, and meet again.
+#[test]
+fn a_last_that_panics() {
+    check(Some(3), || {
+        let room = room(2);
+        let other = {
+            let room = room.clone();
+            thread::spawn(move || [1, 2].map(|round| room.attend_panic(round)))
+        };
+        let here = [1, 2].map(|round| room.attend_panic(round));
+        let there = other.join().unwrap();
+        assert!((0..2).all(|round| here[round] != there[round]), "one a round");
+    });
+}
+
+/// By the time it arrives, the other has gone to sleep.
+#[test]
+fn a_slow_member() {
+    check(Some(2), || {
+        let room = room(2);
+        let other = {
+            let room = room.clone();
+            thread::spawn(move || room.attend(1, 1))
+        };
+        (0..4).for_each(|_| thread::yield_now());
+        room.attend(0, 1);
+        other.join().unwrap();
+    });
 }

@@ -4,7 +4,7 @@ use loom::cell::UnsafeCell;
 use loom::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::domain::{Partition, Span};
-use crate::leg::Work;
+use crate::schedule::Work;
 
 /// A rate part and an update part on a row of sub-domains of one point each.
 ///
@@ -20,6 +20,8 @@ pub struct Row {
     /// Which part of which step of which sub-domain fails.
     fails: Option<(u64, usize, usize)>,
     failed: AtomicBool,
+    /// A worker that takes long over every part.
+    slow: Option<usize>,
 }
 
 // SAFETY: that these accesses are ordered is what is checked.
@@ -43,7 +45,14 @@ impl Row {
             runs: AtomicUsize::new(0),
             fails,
             failed: AtomicBool::new(false),
+            slow: None,
         }
+    }
+
+    /// Worker `worker` takes long over every part.
+    pub fn slowed(mut self, worker: usize) -> Self {
+        self.slow = Some(worker);
+        self
     }
 
     /// To be asked when the schedule has come back.
@@ -70,9 +79,12 @@ impl Work for Row {
         0..self.steps
     }
 
-    fn run(&self, _: usize, step: u64, part: usize, id: usize) {
+    fn run(&self, worker: usize, step: u64, part: usize, id: usize) {
         if self.failed() {
             return;
+        }
+        if self.slow == Some(worker) {
+            (0..3).for_each(|_| loom::thread::yield_now());
         }
         self.runs.fetch_add(1, Ordering::Relaxed);
         if self.fails == Some((step, part, id)) {

@@ -65,3 +65,15 @@ fn failures() {
         }
     }
 }
+
+/// Whoever is slow, the other waits for it, or does its share.
+#[test]
+fn a_slow_worker() {
+    for schedule in [Schedule::Lockstep, Schedule::Fixed, Schedule::PeerToPeer] {
+        for worker in 0..2 {
+            check(Some(1), move || {
+                run(schedule, 2, Row::new(3, 1, None).slowed(worker)).assert_done();
+            });
+        }
+    }
+}

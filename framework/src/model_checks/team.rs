@@ -1,5 +1,7 @@
 //! A team: every member runs every task, the caller comes back after all, and it ends.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
 use loom::sync::atomic::{AtomicUsize, Ordering};
 
 use super::check;
@@ -40,4 +42,29 @@ fn three_members() {
         });
         assert_eq!(ran.load(Ordering::Relaxed), 3);
     });
+}
+
+/// Whoever panics, the caller hears of it when all have come back, and the team goes on.
+#[test]
+fn a_task_that_panics() {
+    for panics in [[true, false], [false, true], [true, true]] {
+        check(Some(2), move || {
+            let mut team = Team::new(2).unwrap();
+            let ran = AtomicUsize::new(0);
+            let task = |worker: usize| {
+                ran.fetch_add(1, Ordering::Relaxed);
+                if panics[worker] {
+                    // Without the message that a `panic!` prints, in every interleaving.
+                    resume_unwind(Box::new(worker));
+                }
+            };
+            let panic = catch_unwind(AssertUnwindSafe(|| team.run(task))).unwrap_err();
+            assert!(panic.downcast_ref::<usize>().is_some_and(|&worker| panics[worker]));
+            assert_eq!(ran.load(Ordering::Relaxed), 2);
+            team.run(|_| {
+                ran.fetch_add(1, Ordering::Relaxed);
+            });
+            assert_eq!(ran.load(Ordering::Relaxed), 4);
+        });
+    }
 }

@@ -1,6 +1,7 @@
-use std::any::Any;
 use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::panic_message::panic_message;
 
 /// Why messages were not handled as they should.
 #[derive(Debug, thiserror::Error)]
@@ -44,17 +45,27 @@ pub(super) fn guarded<R, E: Error>(
         Ok(Ok(result)) => Ok(result),
         Ok(Err(source)) => Err(Failure::Handler { port: port.to_string(), source }),
         Err(payload) => {
-            Err(Failure::Panic { port: port.to_string(), message: panic_message(payload.as_ref()) })
+            Err(Failure::Panic { port: port.to_string(), message: panic_message(payload) })
         }
     }
 }
 
-fn panic_message(payload: &(dyn Any + Send)) -> String {
-    if let Some(text) = payload.downcast_ref::<&str>() {
-        (*text).to_string()
-    } else if let Some(text) = payload.downcast_ref::<String>() {
-        text.clone()
-    } else {
-        "(a payload that is not text)".to_string()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Grudge;
+
+    impl Drop for Grudge {
+        fn drop(&mut self) {
+            panic!("dropped");
+        }
+    }
+
+    #[test]
+    fn a_payload_that_panics_when_dropped_is_a_failure_like_any_other() {
+        let handler = || -> Result<(), std::fmt::Error> { std::panic::panic_any(Grudge) };
+        let failure = guarded("results", handler).unwrap_err();
+        assert!(matches!(failure, Failure::Panic { .. }), "{failure}");
     }
 }

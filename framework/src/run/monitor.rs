@@ -5,7 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::History;
 use super::every::Timetable;
 use crate::domain::Domain;
-use crate::leg::{Cause, panic_message};
+use crate::failure::Cause;
+use crate::panic_message::panic_message;
 use crate::simulation::{RunError, Simulation};
 use crate::whole::Whole;
 

@@ -184,7 +184,7 @@ impl<D: Domain> Run<D> {
     /// had not been interrupted. Histories and series in the folder are cut back to it.
     ///
     /// [`Until::time`] is part of what is computed: with another end than the interrupted run
-    /// had, the last steps differ.
+    /// had, the last steps differ; of a method with a fixed time step, all of them.
     #[must_use]
     pub fn restart_from(mut self, checkpoint: impl Into<PathBuf>) -> Self {
         self.restart_from = Some(checkpoint.into());

@@ -9,7 +9,7 @@ use super::snapshot::Snapshot;
 use super::view::View;
 use super::{History, OutputError};
 use crate::checkpoint::Header;
-use crate::format::{AtomicFile, Pvd, Values};
+use crate::format::{AtomicFile, Pvd, Values, remove_abandoned};
 use crate::simulation::{Position, Saved, column_block};
 
 /// What is written, and where.
@@ -49,6 +49,8 @@ struct Log {
     history: History,
     path: PathBuf,
     file: File,
+    /// Bytes of whole rows in the file.
+    length: u64,
     line: String,
 }
 
@@ -62,6 +64,7 @@ impl Store {
     ) -> Result<Self, OutputError> {
         let folder = &layout.folder;
         fs::create_dir_all(folder).map_err(refused("make folder", folder))?;
+        remove_abandoned(folder);
         let logs: Vec<Log> = histories
             .into_iter()
             .map(|history| Log::open(folder, history))
@@ -81,14 +84,20 @@ impl Store {
         Ok(Self { layout, series: all_series, logs, checkpoints, last_checkpoint: None, files })
     }
 
-    /// Appends a row to a history.
+    /// Appends a row to a history: all of it or, if the disk is full, nothing.
     pub fn log(&mut self, row: &Row) -> Result<(), OutputError> {
         let log = &mut self.logs[row.monitor];
         log.history.push(row.step, row.time, &row.values);
         log.line.clear();
         log.history.csv_row(log.history.len() - 1, &mut log.line);
         // One write for a whole line: who is killed leaves no half of one.
-        log.file.write_all(log.line.as_bytes()).map_err(refused("write", &log.path))
+        log.file.write_all(log.line.as_bytes()).map_err(|error| {
+            // If that fails too, the first error is what is to be told.
+            let _ = log.file.set_len(log.length);
+            refused("write", &log.path)(error)
+        })?;
+        log.length += log.line.len() as u64;
+        Ok(())
     }
 
     /// Writes a file of series number `series`.
@@ -183,7 +192,7 @@ impl Log {
                 File::options().append(true).open(&path)
             })
             .map_err(refused("write", &path))?;
-        Ok(Self { history, path, file, line: String::new() })
+        Ok(Self { history, path, file, length: text.len() as u64, line: String::new() })
     }
 }
 

@@ -7,7 +7,8 @@ use std::time::Duration;
 pub struct Until {
     /// Number of steps, counted from the beginning of time, not from a restart.
     pub steps: Option<u64>,
-    /// Time, hit exactly: the last steps are made a little shorter.
+    /// Time, hit exactly: steps are made a little shorter, those of the last pace; of a method with
+    /// a fixed time step that is all of them.
     pub time: Option<f64>,
     /// Wall-clock time that this run may take, looked at between legs of some 50 ms, or of one
     /// step if that takes longer.

@@ -1,8 +1,8 @@
 //! Equal shares of sub-domains, decided beforehand: predictive balance, to compare with.
 
 use super::order::Order;
+use super::work::Work;
 use crate::dispatch::Meeting;
-use crate::leg::Work;
 use crate::sync::{AtomicBool, Ordering};
 use crate::team::Team;
 

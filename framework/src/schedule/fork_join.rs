@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::order::Order;
-use crate::leg::Work;
+use super::work::Work;
 
 pub(super) struct ForkJoin {
     pool: ThreadPool,

@@ -1,8 +1,8 @@
 //! Slave time loops with a common meeting (Fig. 4b): a part ends when Dispatch completes.
 
 use super::order::Order;
+use super::work::Work;
 use crate::dispatch::Dispatch;
-use crate::leg::Work;
 use crate::sync::{AtomicBool, Ordering};
 use crate::team::Team;
 

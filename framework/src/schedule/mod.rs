@@ -6,10 +6,11 @@ mod lockstep;
 mod order;
 mod peer_to_peer;
 mod serial;
+mod work;
 
 pub use order::HandOut;
+pub(crate) use work::Work;
 
-use crate::leg::Work;
 use crate::team::Team;
 use order::Order;
 

@@ -17,9 +17,9 @@
 use crossbeam_utils::CachePadded;
 
 use super::order::Order;
+use super::work::Work;
 use crate::dispatch::{ReadyDispatch, Server};
 use crate::domain::Partition;
-use crate::leg::Work;
 use crate::sync::{AtomicU32, Mutex, Ordering};
 use crate::team::Team;
 

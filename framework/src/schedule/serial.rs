@@ -1,7 +1,7 @@
 //! The serial reference: what every other schedule must agree with, bit for bit.
 
 use super::order::Order;
-use crate::leg::Work;
+use super::work::Work;
 
 /// Runs every part of every step over all sub-domains in order.
 pub(super) fn run(work: &dyn Work, order: &Order) {

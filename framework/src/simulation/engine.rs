@@ -5,8 +5,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::clock::Clock;
 use crate::columns::Columns;
+use crate::desk::Desk;
 use crate::domain::Domain;
-use crate::leg::{Cause, Desk, Failure, Leg, Stint, Watch, panic_message};
+use crate::failure::{Cause, Failure};
+use crate::leg::{Leg, Stint, Watch};
+use crate::panic_message::panic_message;
 use crate::schedule::Executor;
 use crate::step::{Step, Stretch};
 use crate::trace::Trace;
@@ -63,8 +66,16 @@ impl<D: Domain> Engine<'_, D> {
         stint: Stint,
         watch: Watch<'_>,
     ) -> Result<(), Failure> {
-        let (first, begin) = (stint.steps.start, watch.trace.map(Trace::now));
+        let (first, part) = (stint.steps.start, stint.parts.start);
+        let begin = watch.trace.map(Trace::now);
         let leg = Leg::new(self.domain, self.columns, step, desk, self.clock, stint, watch)
+            .map_err(|fault| Failure {
+                step: first,
+                part,
+                stage: "division of space".to_owned(),
+                sub_domain: None,
+                cause: Cause::Fault(fault),
+            })?
             .past_caches(self.past_caches);
         self.executor.run(&leg);
         let outcome = leg.finish();

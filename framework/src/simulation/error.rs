@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::leg::Cause;
+use crate::failure::Cause;
 
 /// Why a run ended before its time.
 #[derive(Clone, PartialEq, thiserror::Error)]

@@ -209,7 +209,7 @@ impl<D: Domain> Simulation<D> {
         reader: &CheckpointReader,
         kept: &[(String, ColumnId, ElementKind)],
     ) -> Result<(), RestoreError> {
-        for (name, _, kind) in kept {
+        for (name, id, kind) in kept {
             let block = column_block(name);
             let Some(info) = reader.blocks().find(|info| info.name == block) else {
                 return Err(
@@ -220,6 +220,11 @@ impl<D: Domain> Simulation<D> {
             if found != expected {
                 let path = path.to_path_buf();
                 return Err(CheckpointError::WrongKind { path, block, expected, found }.into());
+            }
+            let (expected, found) = (self.columns().bytes(*id).len() / kind.size(), info.count);
+            if found != expected as u64 {
+                let path = path.to_path_buf();
+                return Err(CheckpointError::WrongCount { path, block, expected, found }.into());
             }
         }
         let foreign = reader.blocks().find_map(|info| {

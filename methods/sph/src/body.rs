@@ -1,12 +1,9 @@
 //! Bodies, and how the fluid feels them.
 
-use serde::{Deserialize, Serialize};
-
 pub use finegrain_framework::shape::Body;
 
 /// Whether the fluid sticks to bodies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Slip {
     /// It has the velocity of the surface there.
     #[default]
@@ -16,8 +13,7 @@ pub enum Slip {
 }
 
 /// Where the pressure of the particles that fill bodies comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WallPressure {
     /// From a density that evolves as that of the fluid does: virtual particles that repel by
     /// being compressed (Monaghan 1994).
@@ -29,8 +25,7 @@ pub enum WallPressure {
 }
 
 /// Which velocity friction sees in bodies that the fluid sticks to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WallVelocity {
     /// A profile that is linear from the particle that sees it through that of the surface, at
     /// most `beta_max` times its own (Morris, Fox & Zhu 1997, section 3.4).

@@ -1,10 +1,7 @@
 //! The number of space dimensions of a scene.
 
-use serde::{Deserialize, Serialize};
-
 /// How many space dimensions a scene has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// Along x.
     One,

@@ -2,7 +2,6 @@
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::dimension::Dimension;
@@ -12,8 +11,7 @@ use crate::dimension::Dimension;
 /// Each packing repeats an orthogonal cell, so a whole number of cells in each direction is
 /// periodic without a fault: every particle has all its nearest neighbours at the spacing `d`,
 /// also through the faces of the box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Packing {
     /// Rows `d` apart in the plane; 4 nearest neighbours.
     Square,

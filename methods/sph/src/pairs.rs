@@ -6,11 +6,9 @@
 //! be won.
 
 use finegrain_framework::Notes;
-use serde::{Deserialize, Serialize};
 
 /// Whether the sweeps of an evaluation share what the first has found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pairs {
     /// Every sweep searches.
     #[default]

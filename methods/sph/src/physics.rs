@@ -1,7 +1,6 @@
 //! What a scene models.
 
 use finegrain_framework::VectorField;
-use serde::{Deserialize, Serialize};
 
 use crate::body::{Body, Slip};
 use crate::error::{SphError, finite, not_negative, positive};
@@ -71,8 +70,7 @@ impl Physics {
 }
 
 /// Viscous term of the momentum equation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Viscosity {
     /// Strain-rate form of Holmes et al. (2011), eq. I.2: two rate stages, one for the
     /// strain-rate tensor of every particle and one for its divergence.

@@ -1,7 +1,6 @@
 //! How a scene is discretised.
 
 use finegrain_framework::Integrator;
-use serde::{Deserialize, Serialize};
 
 use crate::body::{WallPressure, WallVelocity};
 use crate::error::{SphError, not_negative, positive};
@@ -106,8 +105,7 @@ impl Scheme {
 }
 
 /// Where density comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Density {
     /// It evolves by the equation of continuity (Holmes et al. 2011, eq. I.1).
     #[default]
@@ -117,16 +115,14 @@ pub enum Density {
 }
 
 /// Entropically damped artificial compressibility (Ramachandran & Puri 2019).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edac {
     /// Diffusivity of the pressure in units of `h c / 8`; theirs is 0.5.
     pub diffusion: f64,
 }
 
 /// How the pressure of two particles makes a force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PressureForm {
     /// `p_i / rho_i^2 + p_j / rho_j^2` (Holmes et al. 2011, eq. I.2).
     #[default]
@@ -139,8 +135,7 @@ pub enum PressureForm {
 }
 
 /// The gradient of the kernel in differences.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gradient {
     /// As it is.
     #[default]

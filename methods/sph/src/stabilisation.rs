@@ -2,7 +2,6 @@
 //! where it is not made.
 
 use finegrain_framework::Real;
-use serde::{Deserialize, Serialize};
 
 use crate::error::{SphError, not_negative, positive};
 use crate::kernel::Kernel;
@@ -56,8 +55,7 @@ pub struct DensityDiffusion {
 }
 
 /// What density diffusion smooths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiffusionForm {
     /// The density itself (Molteni & Colagrossi 2009): wrong where a free surface cuts off a
     /// gradient.

@@ -2,7 +2,6 @@
 
 use finegrain_framework::space::Cells;
 use finegrain_framework::{Fault, Moment, Own, Real, Stage, UpdateStage};
-use serde::{Deserialize, Serialize};
 
 use crate::evaluation::{Piece, Update};
 use crate::fields::Fields;
@@ -11,8 +10,7 @@ use crate::quantity::Quantity;
 use crate::scheme::{Density, Scheme};
 
 /// Pressure as a function of density, and for a gas of energy.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", tag = "kind", deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StateEquation {
     /// `p = c^2 (rho - rho_0) + p_b` (Morris, Fox & Zhu 1997 take `p_b = c^2 rho_0`).
     Linear {
@@ -158,7 +156,7 @@ impl<T: Real, P: Real> UpdateStage<Cells<P>> for Thermodynamics<T, P> {
             None => Ok(()),
             Some(i) => Err(Fault::new(format!(
                 "particle {} has density {}; it must be positive",
-                own.spans()[0].start + i,
+                own.state(fields.identity).whole()[i],
                 density[i]
             ))),
         }

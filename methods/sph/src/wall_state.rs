@@ -65,7 +65,7 @@ impl<T: Real, P: Real> UpdateStage<Cells<P>> for WallState<T, P> {
                     return Err(Fault::new(format!(
                         "particle {} in a body has density {}, from a pressure of {}; it must be \
                          positive",
-                        own.spans()[0].start + i,
+                        own.state(fields.identity).whole()[i],
                         density[i],
                         extrapolated[i]
                     )));

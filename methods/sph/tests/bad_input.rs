@@ -239,3 +239,20 @@ fn choices_that_do_not_make_a_gas() {
     let none = Scheme { smoothing: Smoothing::Adaptive { longest: 0.0 }, ..scheme };
     said(&gas, &physics, &none, "longest smoothing length is 0");
 }
+
+/// By the number that dumps show, not by its place after sorting.
+#[test]
+fn a_particle_without_density_is_named_by_its_identity() {
+    let mut start = start();
+    start.positions.reverse();
+    let sph = Sph::<f64>::new(&start, &FLUID, &Physics::default(), &Scheme::default()).unwrap();
+    let settings = Settings { workers: 1, ..Settings::default() };
+    let (fields, mut simulation) = (sph.fields, Simulation::new(sph.model, settings).unwrap());
+    simulation.begin().unwrap();
+    let identity = simulation.columns().values(fields.identity);
+    let place = identity.iter().zip(0..).position(|(&identity, i)| identity != i).unwrap();
+    let expected = format!("particle {} has density", identity[place]);
+    simulation.whole().columns.values_mut(fields.density)[place] = -3.0;
+    let said = simulation.advance(1).unwrap_err().to_string();
+    assert!(said.contains(&expected), "{expected}: {said}");
+}

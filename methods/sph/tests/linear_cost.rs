@@ -1,10 +1,12 @@
 //! The cost of a step is linear in the number of particles: what a particle has to look at does
 //! not depend on how many there are, in a box that is filled and in one that is nearly empty.
 
+use std::time::{Duration, Instant};
+
 use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::{CellsOptions, Region};
-use finegrain_framework::{Columns, Domain, State, Team};
-use finegrain_sph::Packing;
+use finegrain_framework::{Columns, Domain, Schedule, Settings, Simulation, State, Team};
+use finegrain_sph::{Fluid, Packing, Physics, Scheme, Sph, Start, StateEquation, Viscosity};
 
 /// Candidates that a particle has on average, and neighbouring sub-domains that a sub-domain has.
 fn work_per_particle(positions: &[[f64; 3]], region: Region, range: f64) -> (f64, f64) {
@@ -61,4 +63,46 @@ fn empty_space_costs_nothing() {
     let both: Vec<_> = cluster.iter().copied().chain(far).collect();
     let (apart, _) = work_per_particle(&both, open(), 0.2);
     assert!(apart < 1.3 * alone, "{alone} candidates in one cluster, {apart} in two far apart");
+}
+
+/// Time that ten steps of a vortex flow take, with all that happens between them; the least of several
+/// times, which what else the machine does can only make longer.
+fn time_of_steps(length: f64) -> Duration {
+    let lattice = Packing::Square.fit([length, 3.2, 1.0], 0.1).unwrap();
+    let positions: Vec<_> = lattice.displaced_positions(0.1, 7).collect();
+    let start = Start {
+        region: Region {
+            lower: vec![0.0; 2],
+            upper: lattice.lengths()[..2].to_vec(),
+            periodic: vec![true; 2],
+        },
+        spacing: 0.1,
+        particle_volume: lattice.volume_per_particle(),
+        velocities: positions.iter().map(|x| [0.0, x[0].sin(), 0.0]).collect(),
+        positions,
+    };
+    let fluid = Fluid {
+        density: 1.0,
+        sound_speed: 10.0,
+        kinematic_viscosity: 0.01,
+        state_equation: StateEquation::Linear { background: 0.0 },
+    };
+    let physics = Physics { viscosity: Some(Viscosity::StrainRate), ..Physics::default() };
+    let sph = Sph::<f64>::new(&start, &fluid, &physics, &Scheme::default()).unwrap();
+    let settings = Settings { schedule: Schedule::Serial, ..Settings::default() };
+    let mut simulation = Simulation::new(sph.model, settings).unwrap();
+    let ten_steps = |simulation: &mut Simulation<_>| {
+        let begin = Instant::now();
+        simulation.advance(10).unwrap();
+        begin.elapsed()
+    };
+    (0..8).map(|_| ten_steps(&mut simulation)).min().unwrap()
+}
+
+/// Sixteen times as many particles: 256 times the time if anything in a step were quadratic.
+#[test]
+fn of_a_whole_step() {
+    let (few, many) = (time_of_steps(6.4), time_of_steps(16.0 * 6.4));
+    let growth = many.as_secs_f64() / few.as_secs_f64();
+    assert!(growth < 2.5 * 16.0, "{growth} times as long for 16 times as many particles");
 }

@@ -1,13 +1,14 @@
 //! The lattice of cells and blocks that fits the particles.
 
-use super::Cells;
 use super::lattice::Lattice;
+use super::{Cells, position, values_of};
 use crate::columns::Columns;
 use crate::real::Real;
+use crate::team::Team;
 
 impl<T: Real> Cells<T> {
     /// The lattice for the present positions.
-    pub(super) fn fit(&self, columns: &Columns) -> Lattice {
+    pub(super) fn fit(&mut self, columns: &Columns, team: &mut Team) -> Lattice {
         let dims = self.dims();
         let (mut lower, mut length, mut periodic) = ([0.0; 3], [1.0; 3], [false; 3]);
         for a in 0..dims {
@@ -31,13 +32,16 @@ impl<T: Real> Cells<T> {
         let range = self.range + self.skin;
         let range = range + (8.0 * f64::EPSILON * size).min(range);
         let mut lattice = Lattice::new(lower, length, periodic, dims, range);
-        // Particles a cell holds where there are any: judged from the whole box, which is an
-        // underestimate for a sparse one; blocks are then a little large.
-        let cells: f64 = lattice.counts.iter().map(|&n| n as f64).product();
-        let per_cell = (columns.points() as f64 / cells).max(1.0);
+        // Particles a cell holds where there are any: were empty cells counted, a single particle
+        // that flies away would make blocks of all others as large as the space between.
+        let at = values_of(columns, &self.positions);
+        let cells = self.sorter.distinct(team, columns.points(), |i| {
+            lattice.key(lattice.coordinates(position(&at[..dims], i)))
+        });
+        let per_cell = columns.points() as f64 / cells.max(1) as f64;
         // As long in every direction as can be, where there are few cells first: what is missing
         // there, the other directions make up for.
-        let mut wanted = self.block_points as f64 / per_cell;
+        let mut wanted = self.block_points as f64 / per_cell.max(1.0);
         let mut axes = [0, 1, 2];
         axes[..dims].sort_unstable_by_key(|&a| lattice.counts[a]);
         for (&a, left) in axes[..dims].iter().zip((1..=dims).rev()) {

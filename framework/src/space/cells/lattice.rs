@@ -3,7 +3,7 @@
 /// Geometry of the cells, decided anew at every sort where a direction is open.
 ///
 /// Cell (i, j, k) has key `(k ny + j) nx + i` (Holmes et al. 2011, eq. 8).
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Lattice {
     pub lower: [f64; 3],
     pub side: [f64; 3],

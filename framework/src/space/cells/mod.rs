@@ -42,7 +42,7 @@ pub struct CellsOptions {
     pub range: f64,
     /// How much further cells see, to sort less often; in the unit of `range`.
     pub skin: f64,
-    /// A block has at least about so many particles.
+    /// A block inside what is filled has about so many particles.
     pub block_points: usize,
 }
 
@@ -168,10 +168,10 @@ impl<T: Real> Cells<T> {
     /// A whole-domain stage: internally parallel, stable, the same for any number of workers.
     ///
     /// # Errors
-    /// If a position is not finite; names the particle.
+    /// If a position is not finite; names the particle's place in the columns.
     pub fn sort(&mut self, columns: &mut Columns, team: &mut Team) -> Result<(), Fault> {
         self.region.wrap(columns, &self.positions, team)?;
-        self.lattice = self.fit(columns);
+        self.lattice = self.fit(columns, team);
         let dims = self.dims();
         let lattice = &self.lattice;
         let at = values_of(columns, &self.positions);
@@ -239,7 +239,7 @@ impl<T: Real> Domain for Cells<T> {
             return Ok(());
         }
         Err(Fault::new(format!(
-            "particle {} has moved by {:.3e} since it was last sorted into its cell, more than half the \
+            "the particle at place {} has moved by {:.3e} since it was last sorted into its cell, more than half the \
              skin, {:.3e}: the time step is past stability, or the skin too thin",
             near.spans()[0].start + worst.1,
             f64::sqrt(worst.0),

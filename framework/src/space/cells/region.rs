@@ -21,7 +21,7 @@ impl Region {
     /// Brings positions that have left the box in a periodic direction to where they come in again.
     ///
     /// # Errors
-    /// If a position is not finite; names the particle.
+    /// If a position is not finite; names the particle's place in the columns.
     pub(super) fn wrap<T: Real>(
         &self,
         columns: &mut Columns,
@@ -32,7 +32,7 @@ impl Region {
             let values = columns.values_mut(column);
             if let Some(i) = values.iter().position(|x| !x.is_finite()) {
                 return Err(Fault::new(format!(
-                    "particle {i} has coordinate {} in direction {a}, which is not finite",
+                    "the particle at place {i} has coordinate {} in direction {a}, which is not finite",
                     values[i]
                 )));
             }

@@ -2,7 +2,7 @@
 
 use super::Cells;
 use super::sort::Sorter;
-use crate::columns::{Columns, ElementKind};
+use crate::columns::Columns;
 use crate::memory::Line;
 use crate::real::Real;
 use crate::team::Team;
@@ -12,7 +12,6 @@ impl<T: Real> Cells<T> {
     pub(super) fn reorder(&mut self, columns: &mut Columns, team: &mut Team) {
         for id in columns.ids() {
             let column = columns.column(id);
-            let kind = column.kind();
             if !column.is_kept() {
                 continue;
             }
@@ -21,12 +20,11 @@ impl<T: Real> Cells<T> {
             let sorter = &self.sorter;
             let to: &mut [u8] = bytemuck::cast_slice_mut::<Line, u8>(&mut self.spare);
             let to = &mut to[..from.len()];
-            match kind.size() {
+            match column.kind().size() {
                 8 => gather::<u64>(team, sorter, from, to),
                 4 => gather::<u32>(team, sorter, from, to),
                 _ => gather::<u8>(team, sorter, from, to),
             }
-            debug_assert!(kind != ElementKind::U8 || kind.size() == 1);
             columns.exchange_lines(id, &mut self.spare);
         }
     }

@@ -55,6 +55,37 @@ impl Sorter {
         true
     }
 
+    /// How many different keys `0..points` have; cheap if those with the same key mostly follow one
+    /// another, as they do after an earlier sort.
+    pub fn distinct(
+        &mut self,
+        team: &mut Team,
+        points: usize,
+        key_of: impl Fn(usize) -> u64 + Sync,
+    ) -> usize {
+        let keys = &mut self.spare_keys;
+        keys.resize_with(points, || AtomicU64::new(0));
+        team.for_each_chunk(keys, CHUNK, |chunk, keys| {
+            for (i, key) in keys.iter_mut().enumerate() {
+                *key.get_mut() = key_of(chunk * CHUNK + i);
+            }
+        });
+        let first_ones = |keys: &mut [AtomicU64]| {
+            let mut found = 0;
+            for i in 0..keys.len() {
+                let key = *keys[i].get_mut();
+                if found == 0 || key != *keys[found - 1].get_mut() {
+                    *keys[found].get_mut() = key;
+                    found += 1;
+                }
+            }
+            found
+        };
+        let runs = first_ones(keys);
+        keys[..runs].sort_unstable_by_key(|key| key.load(Relaxed));
+        first_ones(&mut keys[..runs])
+    }
+
     fn pass(&mut self, team: &mut Team, shift: u32) {
         let points = self.keys.len();
         let digit = |key: u64| (key >> shift) as usize & (DIGITS - 1);
@@ -122,6 +153,19 @@ mod tests {
             let mut sorter = Sorter::default();
             assert!(sorter.sort(&mut team, points, 1 << 17, key));
             assert!((0..points).all(|i| sorter.source(i) == expected[i]));
+        }
+    }
+
+    #[test]
+    fn different_keys_are_counted_in_any_order() {
+        let mut team = Team::new(2).unwrap();
+        let mut sorter = Sorter::default();
+        for (points, keys) in [(0, 7), (1, 7), (5, 7), (50_000, 7), (50_000, 1009)] {
+            let expected = points.min(keys);
+            let mixed = |i: usize| (i * 31 % keys) as u64;
+            assert_eq!(sorter.distinct(&mut team, points, mixed), expected);
+            let in_runs = |i: usize| (i * keys / points.max(keys)) as u64;
+            assert_eq!(sorter.distinct(&mut team, points, in_runs), expected);
         }
     }
 

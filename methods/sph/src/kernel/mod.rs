@@ -18,7 +18,6 @@ pub mod wendland_c6;
 mod tests;
 
 use finegrain_framework::Real;
-use serde::{Deserialize, Serialize};
 
 use crate::dimension::Dimension;
 use cubic::CubicSpline;
@@ -31,8 +30,7 @@ use wendland_c4::WendlandC4;
 use wendland_c6::WendlandC6;
 
 /// The name by which a scene chooses its kernel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SmoothingFunction {
     /// See [`Gaussian`]; the choice of Holmes, Williams & Tilke (2011).
     Gaussian,

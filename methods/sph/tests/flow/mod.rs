@@ -25,6 +25,7 @@ pub fn edac() -> Scheme {
 }
 
 /// Vortices in a periodic box from a disturbed lattice, with or without a cylinder in it.
+#[allow(dead_code)]
 pub fn flow<T: Real, P: Real>(
     dims: usize,
     viscosity: Viscosity,
@@ -32,6 +33,17 @@ pub fn flow<T: Real, P: Real>(
     has_body: bool,
     settings: Settings,
 ) -> (Simulation<Cells<P>>, Fields<T, P>, f64) {
+    let sph = sph(dims, viscosity, scheme, has_body);
+    (Simulation::new(sph.model, settings).unwrap(), sph.fields, sph.particle_mass)
+}
+
+/// The same, not begun.
+pub fn sph<T: Real, P: Real>(
+    dims: usize,
+    viscosity: Viscosity,
+    scheme: &Scheme,
+    has_body: bool,
+) -> Sph<T, P> {
     let (packing, box_sides, spacing) = if dims == 3 {
         // Thin: a support radius of 0.3 in a box 0.25 high.
         (Packing::HexagonalClosePacked, [1.0, 1.0, 0.25], 0.1)
@@ -76,7 +88,5 @@ pub fn flow<T: Real, P: Real>(
         forces_on_bodies: has_body && scheme.wall_velocity != WallVelocity::Linear,
         ..Physics::default()
     };
-    let sph = Sph::<T, P>::new(&start, &fluid, &physics, scheme).unwrap();
-    let simulation = Simulation::new(sph.model, settings).unwrap();
-    (simulation, sph.fields, sph.particle_mass)
+    Sph::new(&start, &fluid, &physics, scheme).unwrap()
 }
