@@ -1,6 +1,8 @@
 //! Flow past a cylinder, against the drag of Sangani & Acrivos (1982) and velocities by finite
 //! elements.
 
+mod runs;
+
 use std::collections::BTreeMap;
 
 use finegrain::scene::{Orders, Precision, Scene};
@@ -32,4 +34,37 @@ fn flow_with_inertia() {
     let errors = errors(&settings);
     assert!(errors["drag_k"].abs() < 0.02, "{errors:?}");
     assert!(errors["momentum_balance"].abs() < 0.01, "{errors:?}");
+}
+
+/// By every method, 24 points across, of which the radius is 1.4 to 8.6: the thinner the cylinder, the coarser.
+#[test]
+fn drag_of_thin_and_thick_cylinders() {
+    let fractions = ["0.01", "0.1", "0.2", "0.4"];
+    for (method, most) in [
+        ("lbm", [0.15, 0.05, 0.02, 0.02]),
+        ("fd", [0.04, 0.02, 0.02, 0.02]),
+        ("sph", [0.25, 0.08, 0.06, 0.08]),
+    ] {
+        for (fraction, most) in fractions.into_iter().zip(most) {
+            let settings = [("resolution", "24"), ("solid_fraction", fraction)];
+            let error = runs::errors(method, "cylinder", &settings)["drag_k"];
+            assert!(error.abs() < most, "{method}, {fraction}: {error}");
+        }
+    }
+}
+
+/// Too thin for particles, however wide the range of the parameter is.
+#[test]
+fn a_cylinder_that_particles_would_see_through() {
+    let scene = Scene::find("cylinder").unwrap();
+    for fraction in ["0.001", "0.01"] {
+        let parameters = scene.set([("resolution", "10"), ("solid_fraction", fraction)]).unwrap();
+        let Err(error) = scene.prepare(None, &parameters, Precision::F64) else {
+            panic!("{fraction} is too thin")
+        };
+        let said = error.to_string();
+        for word in ["solid_fraction", fraction, "larger", "resolution"] {
+            assert!(said.contains(word), "{word} in {said}");
+        }
+    }
 }

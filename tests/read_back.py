@@ -3,15 +3,19 @@
 
     pip install vtk meshio
     cargo test -p finegrain-framework --test format_read_back
-    python tests/read_back.py FOLDER
+    python tests/read_back.py FOLDER [HISTORY COLUMN ARRAY]
 
 The test format_read_back says in its output where it leaves its files.
 
 Prints what the readers found, and fails if a file cannot be read, if an array is not finite or has
-another length than there are points, if the two readers disagree, or if a time series names a file
-that is not there. Without vtk, only the .vtu files are read as grids.
+another length than there are points, if the two readers disagree, if a time series names a file
+that is not there, or if what was read is not what was written: the formulas of format_read_back, the
+numbers of particles, each once, and, where a history of the same run is named, the sum of an array over
+all points, which is in a column of it for the time of each file. Without vtk, only the .vtu files are
+read as grids.
 """
 
+import csv
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -26,8 +30,30 @@ except ImportError:
     vtk_to_numpy = None
 
 
+# What format_read_back writes: a value or vector for point number i.
+WRITTEN = {
+    "particles.vtu": {
+        "density": lambda i: 1000 + i,
+        "velocity": lambda i: np.stack([3 * i, 3 * i + 1, 3 * i + 2], axis=1),
+        "force": lambda i: np.stack([0.1 * i, -1.0 * i, 0.0 * i], axis=1),
+        "id": lambda i: i + 2**40,
+        "cell": lambda i: 3 * i,
+        "a<b & \"c\" > 'd' \u03c1": lambda i: i % 2,
+    },
+    "grid.vti": {
+        "pressure": lambda i: np.sqrt(i),
+        "velocity": lambda i: np.stack([i, -1.0 * i, 0.5 + 0 * i], axis=1),
+    },
+}
+
+
 def check(path, points, arrays):
-    """The arrays of one file: finite, and one value or vector for each point."""
+    """The arrays of one file: finite, one value or vector for each point, and as written."""
+    for name, formula in WRITTEN.get(path.name, {}).items():
+        assert np.array_equal(arrays[name], formula(np.arange(points))), f"{path}: {name} differs"
+    if "identity" in arrays:
+        numbers = np.sort(arrays["identity"])
+        assert np.array_equal(numbers, np.arange(points)), f"{path}: not every particle once"
     for name, values in arrays.items():
         assert len(values) == points, f"{path}: {name} has {len(values)} values, not {points}"
         assert np.isfinite(values).all(), f"{path}: {name} is not finite"
@@ -100,19 +126,34 @@ def read_pvd(path):
     print(f"  {len(sets)} files, times {times}")
 
 
+def check_sums(folder, history, column, array):
+    """The sum of an array over all points of every grid, against what the run itself has summed up."""
+    with open(folder / history) as file:
+        sums = {float(row["time"]): float(row[column]) for row in csv.DictReader(file)}
+    grids = sorted(folder.glob("*.vti"))
+    assert grids, f"no .vti in {folder}"
+    for path in grids:
+        _, arrays, time = with_vtk(vtkXMLImageDataReader(), path)
+        total = arrays[array].sum()
+        assert np.isclose(total, sums[time], rtol=1e-12), f"{path}: {total}, not {sums[time]}"
+    print(f"{len(grids)} sums of {array} as in {history}")
+
+
 READERS = {".vtu": read_vtu, ".vti": read_vti, ".pvd": read_pvd}
 
 
-def main(folder):
+def main(folder, *history):
     files = sorted(file for file in Path(folder).iterdir() if file.suffix in READERS)
     assert files, f"no .vtu, .vti or .pvd in {folder}"
     for file in files:
         print(file.name)
         READERS[file.suffix](file)
+    if history and vtk_to_numpy is not None:
+        check_sums(Path(folder), *history)
     print(f"{len(files)} files read{'' if vtk_to_numpy else ', without vtk'}")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 5):
         sys.exit(__doc__)
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -63,14 +63,16 @@ impl Cylinder {
         }
     }
 
-    /// The cylinder, in the middle of a cell with these side lengths, of which it fills the solid
-    /// fraction.
-    pub fn body(&self, [x, y, _]: [f64; 3]) -> Shape {
-        Shape::Cylinder {
-            axis: Axis::Z,
-            centre: [0.5 * x, 0.5 * y, 0.0],
-            radius: (self.solid_fraction * x * y / PI).sqrt(),
-        }
+    /// Radius of the cylinder, m, of which a cell with these side lengths is filled to the solid fraction.
+    pub fn radius(&self, [x, y, _]: [f64; 3]) -> f64 {
+        (self.solid_fraction * x * y / PI).sqrt()
+    }
+
+    /// The cylinder, in the middle of a cell with these side lengths.
+    pub fn body(&self, sides: [f64; 3]) -> Shape {
+        let [x, y, _] = sides;
+        let centre = [0.5 * x, 0.5 * y, 0.0];
+        Shape::Cylinder { axis: Axis::Z, centre, radius: self.radius(sides) }
     }
 
     /// Superficial mean velocity of creeping flow, m/s, from the drag of a dilute array (Sangani &

@@ -13,11 +13,11 @@ use finegrain_framework::space::Cells;
 use finegrain_framework::space::cells::Region;
 use finegrain_framework::{Columns, Real, Simulation};
 use finegrain_sph::packing::Lattice;
-use finegrain_sph::{Fields, Fluid, Packing, Physics, Sph, Start, WallVelocity, measure};
+use finegrain_sph::{Fields, Fluid, Packing, Physics, Sph, SphError, Start, WallVelocity, measure};
 
 use super::{Flow, SphScene, profile};
 use crate::scene::cylinder::{self, Cylinder, DENSITY, SIDE};
-use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::parameter::{Parameter, ParameterError, Parameters};
 use crate::scene::{Precision, Report, SceneError};
 
 /// All parameters.
@@ -82,11 +82,30 @@ fn build<T: Real, P: Real>(
         forces_on_bodies: scheme.wall_velocity != WallVelocity::Linear,
         ..Physics::default()
     };
-    let sph = Sph::new(&start, &fluid, &physics, &scheme)?;
+    let sph = Sph::new(&start, &fluid, &physics, &scheme).map_err(|error| match error {
+        SphError::EmptyBody { .. } | SphError::Gap { is_thin: true, .. } => {
+            too_thin(&scene, scene.radius(lengths) / spacing).into()
+        }
+        error => SceneError::from(error),
+    })?;
     let volume = lengths[..scene.dims].iter().product();
     let flow = CylinderFlow { scene, volume, sides: [lengths[0], lengths[1]] };
     let description = super::description("cylinder", parameters, precision);
     Ok(SphScene { sph, flow: Box::new(flow), description })
+}
+
+/// Says in the scene's own words that a cylinder of this `radius`, in spacings, has fewer particles in it than
+/// the fluid would see.
+fn too_thin(scene: &Cylinder, radius: f64) -> ParameterError {
+    ParameterError::Invalid {
+        name: "solid_fraction",
+        value: scene.solid_fraction.to_string(),
+        range: format!(
+            "larger, or resolution must be: at resolution {} the radius is {radius:.2} spacings, and \
+             particles see through the cylinder",
+            scene.resolution
+        ),
+    }
 }
 
 /// Particles at rest on a whole lattice.
