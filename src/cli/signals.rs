@@ -42,8 +42,10 @@ fn spawn(mut on_stop: impl FnMut() + Send + 'static, checkpoint: Port<()>) -> io
     let listen = move || {
         for signal in signals.forever() {
             match signal {
-                // A run that has ended needs none.
-                SIGUSR1 => drop(checkpoint.post(())),
+                SIGUSR1 => {
+                    // Nobody asks where there is no folder, or when the run has ended.
+                    let _ = checkpoint.post(());
+                }
                 _ => on_stop(),
             }
         }

@@ -113,7 +113,7 @@ fn a_particle_that_is_nowhere() {
     let mut start = start();
     start.positions[7][1] = f64::NAN;
     let said = begun(&start, |_| {}).unwrap_err();
-    assert!(said.contains("particle 7") && said.contains("direction 1"), "{said}");
+    assert!(said.contains("particle at place 7") && said.contains("direction 1"), "{said}");
 }
 
 /// What comes of beginning with the default physics, with fields that a scene sets as it likes.
