@@ -19,10 +19,20 @@ fn finegrain(arguments: &[&str], folder: &Path) -> String {
     String::from_utf8_lossy(&command.stdout).into_owned()
 }
 
+/// The fields of a line of CSV, some of them quoted.
+fn fields(line: &str) -> Vec<String> {
+    let mut is_quoted = false;
+    let ends = |c: char| {
+        is_quoted ^= c == '"';
+        c == ',' && !is_quoted
+    };
+    line.split(ends).map(|field| field.trim_matches('"').to_owned()).collect()
+}
+
 /// The rows of a CSV table, by the names of its columns.
 fn table(path: &Path) -> Vec<HashMap<String, String>> {
     let text = std::fs::read_to_string(path).unwrap();
-    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let mut lines = text.lines().map(fields);
     let header = lines.next().expect("a header");
     let row = |line: Vec<String>| {
         assert_eq!(line.len(), header.len(), "{line:?}");
