@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 ///
 /// Bytes go to a hidden temporary file in the same folder, which [`AtomicFile::commit`] syncs and
 /// renames. Dropped without a commit it is removed, and what stood under the name stays. A process
-/// that is killed leaves at most the temporary file, whose name ends in `.part`, until
-/// [`remove_abandoned`].
+/// that is killed leaves at most the temporary file, whose name ends in `.part`; the next output into
+/// the same folder removes it.
 #[derive(Debug)]
 pub struct AtomicFile {
     target: PathBuf,
