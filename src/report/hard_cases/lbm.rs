@@ -56,21 +56,30 @@ const fn case(
 const fn layers(name: &'static str, settings: Settings) -> HardCase {
     const VORTICES: Sign =
         Sign { result: "vortices", least: 2.0, most: 2.0, symptom: "spurious vortices" };
-    case(name, "double-shear-layer", settings, 1.0, &[VORTICES, SPEED])
+    case(name, "double-shear-layer", settings, 1.0, &[VORTICES, SPEED, SOUND])
 }
 
 const fn cavity(name: &'static str, settings: Settings) -> HardCase {
-    case(name, "cavity", settings, 20.0, &[SPEED])
+    case(name, "cavity", settings, 20.0, &[SPEED, SOUND])
 }
 
 const fn vortices(name: &'static str, settings: Settings) -> HardCase {
     // The peak of the dissipation is at 9 / (2 pi).
-    case(name, "taylor-green", settings, 1.6, &[SPEED])
+    case(name, "taylor-green", settings, 1.6, &[SPEED, SOUND])
 }
 
 const fn cylinder(name: &'static str, until: f64, settings: Settings) -> HardCase {
-    case(name, "channel-cylinder", settings, until, &[SPEED])
+    case(name, "channel-cylinder", settings, until, &[SPEED, SOUND])
 }
 
-/// All run at a Mach number of 0.1 of the speed of layers, lid and vortices.
+/// All run at a Mach number of 0.1 of the speed of layers, lid and vortices; this is that of the end.
 const SPEED: Sign = Sign { result: "mach", least: 0.0, most: 0.18, symptom: "too fast" };
+
+/// At any time. Flow that overtakes its own sound is none that these lattices can have: their equilibrium is an
+/// expansion for small Mach numbers (Qian, d'Humieres & Lallemand 1992, Europhys. Lett. 17).
+const SOUND: Sign = Sign {
+    result: "largest_mach",
+    least: 0.0,
+    most: 1.0f64.next_down(),
+    symptom: "faster than sound",
+};

@@ -2,6 +2,7 @@
 
 mod pages;
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::{self, File};
 use std::io;
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::hard_cases::{HardCase, Variant};
 use crate::figure::{FigureError, Tile, Tiles, Tone};
-use crate::scene::{Orders, Precision, Report, Scene, SceneError};
+use crate::scene::{Orders, Precision, Scene, SceneError};
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,7 +33,7 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Survives => f.write_str("survives"),
-            Self::Wrong(symptoms) => write!(f, "survives, but {}", symptoms.join(", ")),
+            Self::Wrong(symptoms) => write!(f, "ends, but {}", symptoms.join(", ")),
             Self::BlowsUp(error) => write!(f, "blows up: {error}"),
             Self::Unfinished => f.write_str("not finished"),
         }
@@ -164,7 +165,7 @@ fn run(
     let wall_s = begun.elapsed().as_secs_f64();
     let outcome = match ended {
         Ok(report) if report.stopped == Stopped::WallClock => Outcome::Unfinished,
-        Ok(report) => judge(case, &report),
+        Ok(report) => judge(case, &report.results),
         Err(SceneError::Run(failed)) => Outcome::BlowsUp(failed.to_string()),
         Err(other) => return Err(other),
     };
@@ -172,10 +173,10 @@ fn run(
 }
 
 /// Looks for the signs that something is wrong.
-fn judge(case: &HardCase, report: &Report) -> Outcome {
+fn judge(case: &HardCase, results: &BTreeMap<&str, f64>) -> Outcome {
     let mut symptoms = Vec::new();
     for sign in case.signs {
-        match report.results.get(sign.result) {
+        match results.get(sign.result) {
             Some(&value) if (sign.least..=sign.most).contains(&value) => {}
             Some(value) => {
                 symptoms.push(format!("{} ({} = {value:.3})", sign.symptom, sign.result))
@@ -228,7 +229,7 @@ impl Map {
     pub fn draw(&self, path: &Path) -> Result<(), FigureError> {
         let mut tiles = Tiles::new("Stability on hard cases")
             .legend(Tone::Good, "survives")
-            .legend(Tone::Doubtful, "survives, but wrong")
+            .legend(Tone::Doubtful, "ends, but wrong")
             .legend(Tone::Bad, "blows up")
             .legend(Tone::Unknown, "not finished");
         for row in self.cases() {
@@ -259,4 +260,24 @@ fn tile(entry: &Entry) -> Tile {
         Outcome::Unfinished => (Tone::Unknown, "not finished".to_owned()),
     };
     Tile { label: entry.variant.to_owned(), note, tone }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::hard_cases;
+
+    /// Whatever a flow by lattice Boltzmann is like in the end: if it was as fast as sound it is wrong.
+    #[test]
+    fn what_was_faster_than_sound_does_not_survive() {
+        for case in hard_cases::all().filter(|case| case.method == "lbm") {
+            let after = |largest| {
+                let results = [("vortices", 2.0), ("mach", 0.1), ("largest_mach", largest)];
+                judge(case, &BTreeMap::from(results))
+            };
+            assert_eq!(after(0.3), Outcome::Survives, "{}", case.name);
+            let Outcome::Wrong(symptoms) = after(1.0) else { panic!("{}", case.name) };
+            assert_eq!(symptoms, ["faster than sound (largest_mach = 1.000)"], "{}", case.name);
+        }
+    }
 }

@@ -265,6 +265,9 @@ impl<T: Compiled> Prepared for LbmScene<T> {
         report.results.insert("relaxation_time", relaxation_time);
         let speed = measure::largest_speed(&mut simulation.whole(), &parts);
         report.results.insert("mach", mesh.mach(speed));
+        let before = summary.histories.iter().filter_map(|history| history.column("largest_speed"));
+        let largest = before.flatten().fold(speed, f64::max);
+        report.results.insert("largest_mach", mesh.mach(largest));
         let lbm = Final { parts, mesh, fields };
         flow.judge(&mut report, &summary, simulation, &lbm);
         report.picture = Some(picture(simulation, &lbm, flow.title()));
