@@ -1,14 +1,19 @@
 //! Euler's equations of an ideal gas: density, momentum and energy are carried along, and pressure pushes.
 //!
-//! Fluxes are split by the largest speed nearby and reconstructed component by component, by WENO of fifth
-//! order (Jiang & Shu 1996; weights of Borges et al. 2008). Where that would leave a point without density
-//! or pressure, as much as needed of the flux of first order takes its place (Hu, Adams & Shu 2013, J.
-//! Comput. Phys. 242), so that none ever becomes negative.
+//! Fluxes are taken apart into families of waves, and each family is split by its largest speed nearby and
+//! reconstructed by itself, by WENO of fifth order (Jiang & Shu 1996; Shu 1998, Lect. Notes Math. 1697; weights of
+//! Borges et al. 2008). Density, momentum and energy have the steps of all families: where these have not parted yet
+//! every parabola has a step in it, and what is made of them oscillates. Where the sum would leave a point without
+//! density or pressure, as much as needed of the flux of first order takes its place (Hu, Adams & Shu 2013, J. Comput.
+//! Phys. 242), so that none ever becomes negative.
+
+mod waves;
 
 use finegrain_framework::pack::Pack;
 use finegrain_framework::space::Grid;
 use finegrain_framework::{Fault, Integrator, Pace, Pacing, Real, Stage, State, Whole};
 
+use self::waves::{Side, Waves};
 use super::Equation;
 use crate::around::At;
 use crate::boundary::{Boundary, Condition};
@@ -52,12 +57,12 @@ impl<T: Real, const F: usize> Equation<T, F, 0> for Conservation<T> {
     }
 }
 
-/// A gas along an axis.
+/// How a gas flows along an axis.
 #[derive(Clone, Copy)]
 struct Flow<V, const F: usize> {
     flux: [V; F],
-    /// Largest speed of its waves.
-    speed: V,
+    velocity: V,
+    sound: V,
 }
 
 impl<T: Real> Conservation<T> {
@@ -81,7 +86,7 @@ impl<T: Real> Conservation<T> {
         flux[1 + axis] = flux[1 + axis] + pressure;
         flux[F - 1] = flux[F - 1] + pressure * velocity;
         let sound = (pressure * self.heat_ratio / u[0]).sqrt();
-        Flow { flux, speed: velocity.abs() + sound }
+        Flow { flux, velocity, sound }
     }
 
     /// On the face before point `face`.
@@ -95,28 +100,41 @@ impl<T: Real> Conservation<T> {
     ) -> [V; F] {
         let here = u[0].here();
         let mut points = [[here; F]; 6];
-        let mut flows = [Flow { flux: [here; F], speed: here }; 6];
+        let mut flows = [Flow { flux: [here; F], velocity: here, sound: here }; 6];
         for n in 0..6 {
             for f in 0..F {
                 points[n][f] = u[f].shifted(axis, face - 3 + n as isize);
             }
             flows[n] = self.flow(points[n], axis);
         }
-        let mut fastest = flows[0].speed;
-        for n in 1..6 {
-            fastest = fastest.max(flows[n].speed);
+        let left = Side { unknowns: points[2], sound: flows[2].sound };
+        let right = Side { unknowns: points[3], sound: flows[3].sound };
+        let waves = Waves::between(left, right, axis, self.heat_ratio);
+        let (mut states, mut fluxes) = (points, points);
+        let (mut fastest, mut speeds) =
+            (here.splat_like(T::zero()), [here.splat_like(T::zero()); F]);
+        for n in 0..6 {
+            let Flow { flux, velocity, sound } = flows[n];
+            states[n] = waves.strengths(points[n]);
+            fluxes[n] = waves.strengths(flux);
+            fastest = fastest.max(velocity.abs() + sound);
+            let speed = waves.speeds(velocity, sound);
+            for f in 0..F {
+                speeds[f] = speeds[f].max(speed[f].abs());
+            }
         }
         let (mut high, mut low) = ([here; F], [here; F]);
         for f in 0..F {
-            let (mut states, mut fluxes) = ([here; 6], [here; 6]);
+            let (mut state, mut flux) = ([here; 6], [here; 6]);
             for n in 0..6 {
-                states[n] = points[n][f];
-                fluxes[n] = flows[n].flux[f];
+                state[n] = states[n][f];
+                flux[n] = fluxes[n][f];
             }
-            high[f] = split::<V, Weno5Z>(states, fluxes, fastest);
-            let jump = fastest * (states[3] - states[2]);
-            low[f] = (fluxes[2] + fluxes[3] - jump) * T::of(0.5);
+            high[f] = split::<V, Weno5Z>(state, flux, speeds[f]);
+            let jump = fastest * (points[3][f] - points[2][f]);
+            low[f] = (flows[2].flux[f] + flows[3].flux[f] - jump) * T::of(0.5);
         }
+        high = waves.sum(high);
         // Each side's share of a step in which only this face counts.
         let share = u[0].per_spacing(axis) * (dt * T::of(2.0 * (F - 2) as f64));
         self.limit(points[2], low, &mut high, -share);
