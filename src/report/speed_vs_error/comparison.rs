@@ -189,6 +189,8 @@ pub static COMPARISONS: [Comparison; 8] = [
             Line::new("lbm", &[20, 41, 82, 164]),
             Line::new("lbm", &[20, 41, 82, 164]).single(),
             Line::new("lbm", &[20, 41, 82, 164]).with("cumulant", &[("collision", "cumulant")]),
+            // As many spacings above as below the cylinder's centre, which lies out of the middle.
+            Line::new("fd", &[41, 82, 123]),
         ],
     },
     Comparison {
@@ -208,12 +210,13 @@ pub static COMPARISONS: [Comparison; 8] = [
     },
 ];
 
-const CYLINDER: [Line; 5] = [
+const CYLINDER: [Line; 6] = [
     Line::new("sph", &[24, 32, 50, 100]),
     Line::new("sph", &[24, 32, 50, 100]).mixed(),
     Line::new("lbm", &[12, 24, 50, 100, 200]),
     Line::new("lbm", &[12, 24, 50, 100, 200]).with("half-way walls", &[("wall", "half-way")]),
     Line::new("lbm", &[12, 24, 50, 100, 200]).single(),
+    Line::new("fd", &[24, 32, 50, 64, 100]),
 ];
 
 #[cfg(test)]
