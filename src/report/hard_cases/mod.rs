@@ -51,7 +51,7 @@ pub struct Sign {
 pub fn all() -> impl Iterator<Item = &'static HardCase> {
     const SPH: &[HardCase] = &sph::CASES;
     const LBM: &[HardCase] = &lbm::CASES;
-    const FD: &[HardCase] = &fd::CASES;
+    const FD: &[HardCase] = fd::CASES;
     SPH.iter().chain(LBM).chain(FD)
 }
 

@@ -33,7 +33,7 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Survives => f.write_str("survives"),
-            Self::Wrong(symptoms) => write!(f, "ends, but {}", symptoms.join(", ")),
+            Self::Wrong(symptoms) => write!(f, "survives, but {}", symptoms.join(", ")),
             Self::BlowsUp(error) => write!(f, "blows up: {error}"),
             Self::Unfinished => f.write_str("not finished"),
         }
@@ -215,7 +215,7 @@ impl Map {
             let courant = entry.largest_courant.map_or_else(String::new, |c| c.to_string());
             let outcome = entry.outcome.to_string().replace('"', "'");
             text += &format!(
-                "{},\"{}\",{},\"{outcome}\",{courant},{:.1}\n",
+                "{},\"{}\",\"{}\",\"{outcome}\",{courant},{:.1}\n",
                 entry.method, entry.case, entry.variant, entry.wall_s
             );
         }
@@ -229,7 +229,7 @@ impl Map {
     pub fn draw(&self, path: &Path) -> Result<(), FigureError> {
         let mut tiles = Tiles::new("Stability on hard cases")
             .legend(Tone::Good, "survives")
-            .legend(Tone::Doubtful, "ends, but wrong")
+            .legend(Tone::Doubtful, "survives, but wrong")
             .legend(Tone::Bad, "blows up")
             .legend(Tone::Unknown, "not finished");
         for row in self.cases() {
@@ -266,6 +266,20 @@ fn tile(entry: &Entry) -> Tile {
 mod tests {
     use super::*;
     use crate::report::hard_cases;
+
+    #[test]
+    fn names_with_commas_are_one_field_of_the_table() {
+        let [method, case, variant] = ["fd", "a step, carried", "weno5, rk4"].map(str::to_owned);
+        let outcome = Outcome::Survives;
+        let entry = Entry { method, case, variant, outcome, wall_s: 1.0, largest_courant: None };
+        let map = Map { entries: vec![entry], left_out: Vec::new() };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("stability.csv");
+        map.write_csv(&path).unwrap();
+        let text = std::fs::read_to_string(path).unwrap();
+        let row = "fd,\"a step, carried\",\"weno5, rk4\",\"survives\",,1.0";
+        assert_eq!(text.lines().nth(1), Some(row));
+    }
 
     /// Whatever a flow by lattice Boltzmann is like in the end: if it was as fast as sound it is wrong.
     #[test]

@@ -13,7 +13,7 @@ impl Map {
         let body = html! {
             ul.legend {
                 @for (class, what) in [
-                    ("good", "survives"), ("doubtful", "ends, but wrong"), ("bad", "blows up"),
+                    ("good", "survives"), ("doubtful", "survives, but wrong"), ("bad", "blows up"),
                     ("unknown", "not finished"),
                 ] { li { span.tile.(class) { (what) } } }
             }

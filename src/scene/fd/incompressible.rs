@@ -103,8 +103,9 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
         dump.scalar(pressure).vector("velocity", velocity.into_iter().take(unknowns.len()))
     }
 
-    /// `divergence`: the largest, times the spacing over the largest speed; in an empty periodic box
-    /// `momentum_change`: the largest of its components' since the beginning, over the largest speed.
+    /// `largest_speed`: of any component of the velocity at any time; `divergence`: the largest, times the spacing over
+    /// the largest speed; in an empty periodic box `momentum_change`: the largest of its components' since the
+    /// beginning, over the largest speed; without bodies `ripples`.
     fn judge(
         &self,
         report: &mut Report,
@@ -116,6 +117,9 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
         let [_, speed] = energy_and_speed(&mut whole, parts);
         let spacing = parts.mesh.spacing().into_iter().take(parts.mesh.dims()).fold(0.0, f64::max);
         let largest = measure::largest(&mut whole, divergence(parts));
+        let history = &summary.histories[0];
+        let before = history.column("largest_speed").into_iter().flatten();
+        report.result("largest_speed", before.fold(speed, f64::max), None);
         if speed > 0.0 {
             report.result("divergence", largest * spacing / speed, None);
         }
@@ -124,10 +128,13 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
             self.0.bodies().is_empty() && sides.all(|side| side.spread == Spread::Periodic);
         if is_free && speed > 0.0 {
             let names = ["momentum_x", "momentum_y", "momentum_z"];
-            let before = names.map(|name| summary.histories[0].column(name)?.next());
+            let before = names.map(|name| history.column(name)?.next());
             let pairs = momentum(&mut whole, parts).into_iter().zip(before);
             let change = pairs.map(|(now, before)| (now - before.unwrap_or(now)).abs());
             report.result("momentum_change", change.fold(0.0, f64::max) / speed, None);
+        }
+        if self.0.bodies().is_empty() && speed > 0.0 {
+            report.result("ripples", ripples(simulation, parts), None);
         }
         self.0.judge(report, summary, simulation, parts);
     }
@@ -147,6 +154,31 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
             .quantity(Axis::new("speed").unit("m/s"))
             .into()
     }
+}
+
+/// How much of the velocities is as short as the mesh: the root mean square of their fourth differences over 16, over
+/// that of the velocities. Of a wave it is `sin^4(k h / 2)`: 1 for what changes its sign from point to point.
+fn ripples<T: Compiled>(simulation: &Simulation<Grid>, parts: &Parts<T>) -> f64 {
+    let [nx, ny, _] = parts.mesh.shape();
+    let strides = [1, nx, nx * ny];
+    let (mut short, mut all) = (0.0, 0.0);
+    for &unknown in &parts.unknowns {
+        let values = simulation.columns().values(unknown);
+        for (axis, side) in parts.mesh.sides().iter().enumerate() {
+            let stride = strides[axis];
+            for i in 0..values.len() {
+                // Next to ends there are no two points on either side.
+                if !(2..side.points - 2).contains(&(i / stride % side.points)) {
+                    continue;
+                }
+                let at = |by: usize| values[i + by * stride - 2 * stride].as_f64();
+                let fourth = at(0) - 4.0 * at(1) + 6.0 * at(2) - 4.0 * at(3) + at(4);
+                short += (fourth / 16.0).powi(2);
+                all += at(2).powi(2);
+            }
+        }
+    }
+    (short / all).sqrt()
 }
 
 /// Positions, m, and velocities, m/s, in the middle of cells.
