@@ -27,6 +27,7 @@ impl RateStage<Cells<f64>> for Swarm {
         _: &Moment,
     ) -> Result<(), Fault> {
         let (x, v, block) = (near.state(self.x), near.state(self.v), near.sub_domain());
+        let mean = rates.column(self.mean).whole();
         for cell in block.cells() {
             block.candidates(cell, runs);
             for i in cell.span.range().map(|i| i - near.spans()[0].start) {
@@ -41,7 +42,7 @@ impl RateStage<Cells<f64>> for Swarm {
                     }
                 }
                 // It sees itself: the weight is at least 1.
-                rates.column(self.mean).whole()[i] = sum / weight;
+                mean[i] = sum / weight;
             }
         }
         Ok(())
@@ -89,9 +90,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (method, pacing) = ("swarm".to_owned(), Box::new(swarm));
     let model = Model { method, domain, columns, plan, whole: Vec::new(), pacing };
     let mut simulation = Simulation::new(model, Settings::default())?;
-    for _ in 0..10 {
-        simulation.advance(100)?;
-        println!("{:?}", simulation.clock());
+    for _ in 0..5 {
+        simulation.advance(200)?;
+        let speeds = simulation.columns().values(swarm.v).iter().map(|v| v.abs());
+        let fastest = speeds.fold(0.0, f64::max);
+        println!("{:.3} s: the fastest moves at {fastest:.4} 1/s", simulation.clock().time());
     }
+    println!("hash {:016x}", simulation.state_hash());
     Ok(())
 }

@@ -2,6 +2,8 @@
 
 use std::any::Any;
 
+use crossbeam_utils::CachePadded;
+
 use crate::columns::{ColumnId, ColumnSet};
 use crate::domain::Domain;
 use crate::stage::{Fault, Moment, RateStage, UpdateStage};
@@ -34,9 +36,14 @@ pub(super) trait AnyUpdate<D: Domain>: Send + Sync {
     ) -> Result<(), Fault>;
 }
 
+/// A scratch that shares no cache line with another worker's: stages write to theirs all the time.
+fn new_scratch<S: Default + Send + 'static>() -> Box<dyn Any + Send> {
+    Box::new(CachePadded::new(S::default()))
+}
+
 /// The scratch that this very stage made.
 fn own_scratch<S: 'static>(scratch: &mut dyn Any) -> &mut S {
-    scratch.downcast_mut().expect("a stage is handed the scratch it made")
+    scratch.downcast_mut::<CachePadded<S>>().expect("a stage is handed the scratch it made")
 }
 
 impl<D: Domain, S: RateStage<D>> AnyRate<D> for S {
@@ -47,7 +54,7 @@ impl<D: Domain, S: RateStage<D>> AnyRate<D> for S {
         RateStage::writes(self).into_iter().collect()
     }
     fn scratch(&self) -> Box<dyn Any + Send> {
-        Box::new(S::Scratch::default())
+        new_scratch::<S::Scratch>()
     }
     fn rate(
         &self,
@@ -68,7 +75,7 @@ impl<D: Domain, S: UpdateStage<D>> AnyUpdate<D> for S {
         UpdateStage::shifts(self)
     }
     fn scratch(&self) -> Box<dyn Any + Send> {
-        Box::new(S::Scratch::default())
+        new_scratch::<S::Scratch>()
     }
     fn update(
         &self,

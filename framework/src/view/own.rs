@@ -25,7 +25,7 @@ impl Borrows {
     fn claim(&mut self, id: ColumnId) {
         assert!(
             !self.shared.contains(id) && self.exclusive.insert(id),
-            "column {} is already borrowed",
+            "column {} is already borrowed: a column is had once per call, before any loop",
             id.0
         );
     }
