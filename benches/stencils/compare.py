@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """finegrain's finite differences in turns with code that pystencils and Devito generate: best and median of all rounds.
 
-Usage: benches/stencils/compare.py [SIDE] [ROUNDS] [CASE...], of SIDE (448) points along a side of a cube, the cases being
-heat-f64, heat-f32, wave-f64, wave-f32 and plane-f64, which has no peers.
+Usage: benches/stencils/compare.py [SIDE] [ROUNDS] [CASE...], of SIDE (448) points along a side of a cube, the cases
+being heat-f64, heat-f32, wave-f64, wave-f32 and plane-f64, which has no peers.
 
-The peers (PyPI) are installed into an environment of their own, target/stencils, the first time; one where that does not
-work is named and left out. Theirs are bare kernels within ghost points that nobody fills; ours are whole steps of periodic
-cubes: their ends, the check that fields are finite, and all that stepping takes. A copy moves as many points as a
-step, by as many threads.
+The peers (PyPI) are installed into an environment of their own, target/stencils, the first time; one where that
+does not work is named and left out. Theirs are bare kernels within ghost points that nobody fills; ours are whole
+steps of periodic cubes: their ends, the check every ten steps that fields are finite, and all that stepping takes.
+A copy moves as many points as a step, by as many threads.
 """
 
 import statistics

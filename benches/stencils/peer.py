@@ -1,8 +1,8 @@
 """Code that peers generate for the heat equation (7 points) and the wave equation (order 8, 25 points) on a cube.
 
-Usage: peer.py PEER CASE SIDE THREADS, with PEER pystencils or devito, and CASE such as heat-f64. Says `ready`, then, for each
-line it reads, runs STEPS steps in each way that is named in it, in all if none is, and prints `way speed` in million
-points a second, then `done`.
+Usage: peer.py PEER CASE SIDE THREADS, with PEER pystencils or devito, and CASE such as heat-f64. Says `ready`, then,
+for each line it reads, runs STEPS steps in each way that is named in it, in all if none is, and prints `way speed` in
+million points a second, then `done`.
 
 Both have ghost points around SIDE^3 points, which nobody fills: all time is spent in their kernels. Coefficients are
 numbers in the code.
