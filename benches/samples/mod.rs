@@ -19,6 +19,13 @@ impl<'a> Case<'a> {
         Self { name: name.into(), seconds: Vec::new(), run: Box::new(run) }
     }
 
+    /// Takes a sample: how long it took, in seconds.
+    pub fn take(&mut self) -> f64 {
+        let start = Instant::now();
+        (self.run)();
+        start.elapsed().as_secs_f64()
+    }
+
     /// Shortest sample, in seconds.
     pub fn best(&self) -> f64 {
         self.seconds.iter().copied().fold(f64::INFINITY, f64::min)
@@ -42,10 +49,9 @@ impl<'a> Case<'a> {
 pub fn sample(cases: &mut [Case<'_>], samples: usize) {
     for round in 0..=samples {
         for case in &mut *cases {
-            let start = Instant::now();
-            (case.run)();
+            let seconds = case.take();
             if round > 0 {
-                case.seconds.push(start.elapsed().as_secs_f64());
+                case.seconds.push(seconds);
             }
         }
     }

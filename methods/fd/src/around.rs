@@ -128,7 +128,7 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
     /// The first derivative along an axis.
     #[inline(always)]
     pub fn first_derivative(self, axis: usize) -> V {
-        if let Some(closed) = self.around.closed[axis] {
+        if let Some(closed) = self.near_closed_end(axis) {
             return self.closed(axis, closed, &closed.row.first, closed.row.first_data);
         }
         let weights = &self.weights.first[axis];
@@ -143,7 +143,7 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
     /// The second derivative along an axis.
     #[inline(always)]
     pub fn second_derivative(self, axis: usize) -> V {
-        if let Some(closed) = self.around.closed[axis] {
+        if let Some(closed) = self.near_closed_end(axis) {
             return self.closed(axis, closed, &closed.row.second, closed.row.second_data);
         }
         let weights = &self.weights.second[axis];
@@ -153,6 +153,13 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
             sum = sum + (self.shifted(axis, by) + self.shifted(axis, -by)) * weights[k];
         }
         sum
+    }
+
+    /// Lines of no more than the points that central differences read have none, which is known when they are
+    /// compiled: what follows reads places that are not, and would keep all the others out of registers.
+    #[inline(always)]
+    fn near_closed_end(self, axis: usize) -> Option<Closed<'a, V>> {
+        if K > 2 * R + 1 { self.around.closed[axis] } else { None }
     }
 
     #[inline(always)]

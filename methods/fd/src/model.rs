@@ -87,12 +87,15 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
                 }
             }
         }
-        let domain = Grid::builder(mesh.shape())
+        let mut domain = Grid::builder(mesh.shape())
             .periodic(mesh.is_periodic())
             .reach(reach)
             .origin(mesh.position([0; 3]))
-            .spacing(mesh.spacing())
-            .build();
+            .spacing(mesh.spacing());
+        if let Some([rows, planes]) = block(mesh.shape(), reach) {
+            domain = domain.tile(rows, planes);
+        }
+        let domain = domain.build();
         let columns = Columns::new(domain.points());
         let (unknowns, given, out) = (Vec::new(), Vec::new(), Vec::new());
         Ok(Self { mesh, boundaries, order, domain, columns, unknowns, given, out })
@@ -270,6 +273,15 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
             positions: [0, 1, 2].map(|a| (0..shape[a]).map(|i| along(a, i)).collect()),
         }))
     }
+}
+
+/// Rows and planes of a tile in space: a stencil reads twice its reach more of both, from planes around that caches do
+/// not hold where they are large, so a tile is to be some times as high and as thick as that; `None` in the plane, or
+/// if that left few tiles for workers to balance.
+fn block([_, ny, nz]: [usize; 3], reach: usize) -> Option<[usize; 2]> {
+    let length = (4 * reach).max(8);
+    let tiles = ny.div_ceil(length) * nz.div_ceil(length);
+    (nz > 1 && tiles >= 256).then_some([length, length])
 }
 
 /// Weights of the points along a side in the norm of the difference operators, m.

@@ -1,23 +1,37 @@
 //! One row of points, evaluated in packs.
 //!
-//! Most packs read memory as it lies. Those at the two ends of a row read a copy of it with what lies
-//! beyond: the other end of a periodic axis, or ghost points. Points next to closed ends have coefficients
-//! of their own, and go one by one; that part is compiled once, not for every instruction set. A number
-//! has the same bits however it was computed.
+//! Short rows are copied, with what lies beyond their ends: the other end of a periodic axis, or ghost points.
+//! In long ones only the packs at the two ends read a copy, the others memory as it lies. Points next to closed
+//! ends have coefficients of their own, and go one by one; that part is compiled once, not for every
+//! instruction set. A number has the same bits however it was computed.
 
 use finegrain_framework::Real;
-use finegrain_framework::pack::{MOST_LANES, Pack, Packed};
+use finegrain_framework::pack::{Bypass, Fill, MOST_LANES, Pack, Packed, Targets, fill, prefetch};
 
 use crate::around::{Around, At, Closed, Weights};
 use crate::equation::Equation;
 use crate::line::{self, Ends};
 use crate::sweep::Sweep;
 
-/// A pack and what is read on either side of it.
-pub(crate) type Window<T> = [T; WINDOW];
-const WINDOW: usize = MOST_LANES + 16;
-/// An empty window.
-pub(crate) const EMPTY: Window<()> = [(); WINDOW];
+/// A copy of a stretch of a row, and of what is read on either side of it.
+#[repr(align(64))]
+#[derive(Clone)]
+pub(crate) struct Window<T>([T; WINDOW]);
+const WINDOW: usize = STRETCH + 2 * MARGIN;
+/// Rows up to so long are copied as one, a small part of the nearest cache: packs at ends cost as much as several
+/// others.
+const STRETCH: usize = 512;
+/// Room for what lies beyond an end; packs behind it are aligned.
+const MARGIN: usize = MOST_LANES;
+
+impl<T: Real> Default for Window<T> {
+    fn default() -> Self {
+        Self([T::zero(); WINDOW])
+    }
+}
+
+/// How many packs are asked for before they are needed.
+const AHEAD: usize = 16;
 
 /// A pack of one.
 type One<T> = <T as Packed>::Pack<pulp::Scalar>;
@@ -32,13 +46,22 @@ pub(crate) enum Advance<T> {
 }
 
 impl<T: Real> Advance<T> {
+    /// Whether it depends on what was in its place before.
+    fn is_onto(self) -> bool {
+        matches!(self, Self::TwoStep(_) | Self::Before(_))
+    }
+
     #[inline(always)]
-    fn to<V: Pack<Scalar = T>>(self, here: V, rate: V, before: V) -> V {
+    fn to<V: Pack<Scalar = T>>(self, here: V, rate: V) -> V {
+        if let Self::Euler(dt) = self { here + rate * dt } else { rate }
+    }
+
+    #[inline(always)]
+    fn onto<V: Pack<Scalar = T>>(self, here: V, rate: V, before: V) -> V {
         match self {
-            Self::Rate => rate,
-            Self::Euler(dt) => here + rate * dt,
-            Self::TwoStep(dt_squared) => here + (here - before) + rate * dt_squared,
             Self::Before(half_dt_squared) => here + before + rate * half_dt_squared,
+            Self::TwoStep(dt_squared) => here + (here - before) + rate * dt_squared,
+            _ => self.to(here, rate),
         }
     }
 }
@@ -71,6 +94,8 @@ pub(crate) struct Row<
     pub data: &'a [Vec<T>],
     pub advance: Advance<T>,
     pub dt: T,
+    /// Leave to write past the caches.
+    pub bypass: Option<Bypass<'a>>,
     /// Points next to either end that have coefficients of their own along x.
     pub closed: usize,
 }
@@ -115,13 +140,16 @@ where
         let mut done = start;
         while done < end {
             let mut place = Place { x: done, count: 1, offset: None };
-            if first <= done && done + V::LANES <= last {
+            if end - done > STRETCH && first <= done && done + V::LANES <= last {
                 place.count = (last - done) / V::LANES;
             } else {
                 // The last pack begins before what has been done.
                 place.x = done.min(end - V::LANES);
-                place.offset = Some(R);
-                self.copy(window, place.x, R, V::LANES + 2 * R);
+                if end - place.x <= STRETCH {
+                    place.count = (end - place.x) / V::LANES;
+                }
+                place.offset = Some(MARGIN);
+                self.copy(window, place.x, R, place.count * V::LANES + 2 * R);
             }
             let again = done - place.x;
             let mut kept = [[T::zero(); MOST_LANES]; F];
@@ -152,7 +180,7 @@ where
             if margin <= x && x + margin < nx {
                 place.count = end.min(nx - margin) - x;
             } else {
-                place.offset = Some(M / 2);
+                place.offset = Some(MARGIN);
                 self.copy(window, x, M / 2, M);
             }
             self.run::<One<T>, M>(pulp::Scalar, weights, window, place, out);
@@ -160,13 +188,14 @@ where
         }
     }
 
-    /// Copies `length` places of the rows, from `before` before `x` on, with what lies beyond their ends.
+    /// Copies `length` places of the rows, from `before` before `x` on, with what lies beyond their ends, to
+    /// where place `x` is at [`MARGIN`].
     fn copy(&self, window: &mut [Window<T>], x: usize, before: usize, length: usize) {
         let nx = self.unknowns[0].here.len();
         // Of the window, how much lies before the row and how much does not lie beyond it.
         let (start, end) = (before.saturating_sub(x), (nx + before).saturating_sub(x).min(length));
         for f in 0..F + G {
-            let window = &mut window[f][..length];
+            let window = &mut window[f].0[MARGIN - before..][..length];
             let row = self.cross(f).here;
             window[start..end].copy_from_slice(&row[x + start - before..x + end - before]);
             for n in (0..start).chain(end..length) {
@@ -213,20 +242,11 @@ where
         let length = count * V::LANES;
         let targets =
             out.each_mut().map(|row| &mut V::packs_mut(simd, &mut row[x..x + length])[..count]);
-        for pack in 0..count {
-            let mut u = [At::new(&unknowns[0], weights, pack); F];
-            for f in 1..F {
-                u[f] = At::new(&unknowns[f], weights, pack);
-            }
-            let mut c = [u[0]; G];
-            for g in 0..G {
-                c[g] = At::new(&given[g], weights, pack);
-            }
-            let rates = self.sweep.equation.rate(u, c, self.dt);
-            for f in 0..F {
-                let before = V::of(simd, targets[f][pack]);
-                targets[f][pack] = self.advance.to(u[f].here(), rates[f], before).vector();
-            }
+        let task = Packs { row: self, weights, unknowns, given, count };
+        if self.advance.is_onto() {
+            task.onto(targets);
+        } else {
+            fill(targets, self.bypass, task);
         }
     }
 
@@ -247,16 +267,16 @@ where
         for n in K / 2 - nearby..K / 2 + nearby + 1 {
             let piece = match offset {
                 None => &cross.here[x + n - K / 2..][..length],
-                Some(offset) => &window[f][offset + n - K / 2..][..length],
+                Some(offset) => &window[f].0[offset + n - K / 2..][..length],
             };
             around.lines[0][n] = &V::packs(simd, piece)[..count];
         }
         for a in 1..3 {
             for n in 0..K {
                 let row = cross.lines[a - 1][n + M / 2 - K / 2];
-                if !row.is_empty() {
-                    around.lines[a][n] = &V::packs(simd, &row[x..x + length])[..count];
-                }
+                // All as long as each other, so that no pack needs to be checked for being there.
+                let row = if row.is_empty() { cross.here } else { row };
+                around.lines[a][n] = &V::packs(simd, &row[x..x + length])[..count];
             }
         }
         if K > N && f < F {
@@ -273,5 +293,102 @@ where
             }
         }
         around
+    }
+}
+
+/// Packs side by side, and all around them.
+struct Packs<
+    'a,
+    V: Pack<Scalar: Real>,
+    E,
+    const F: usize,
+    const G: usize,
+    const R: usize,
+    const N: usize,
+    const M: usize,
+    const K: usize,
+> {
+    row: &'a Row<'a, V::Scalar, E, F, G, R, N, M>,
+    weights: &'a Weights<V, R>,
+    unknowns: [Around<'a, V, K>; F],
+    given: [Around<'a, V, K>; G],
+    count: usize,
+}
+
+impl<
+    V: Pack<Scalar: Real>,
+    E,
+    const F: usize,
+    const G: usize,
+    const R: usize,
+    const N: usize,
+    const M: usize,
+    const K: usize,
+> Packs<'_, V, E, F, G, R, N, M, K>
+where
+    E: Equation<V::Scalar, F, G>,
+{
+    /// The unknowns and their rates of change.
+    #[inline(always)]
+    fn rates(&self, pack: usize) -> [[V; F]; 2] {
+        let mut u = [At::new(&self.unknowns[0], self.weights, pack); F];
+        for f in 1..F {
+            u[f] = At::new(&self.unknowns[f], self.weights, pack);
+        }
+        let mut c = [u[0]; G];
+        for g in 0..G {
+            c[g] = At::new(&self.given[g], self.weights, pack);
+        }
+        let rates = self.row.sweep.equation.rate(u, c, self.row.dt);
+        let mut here = rates;
+        for f in 0..F {
+            here[f] = u[f].here();
+            // Processors foresee no further than the end of a page, which is about that of a row.
+            let [_, rows, planes] = &self.unknowns[f].lines;
+            let furthest = if u[f].axes() > 2 { planes[K - 1] } else { rows[K - 1] };
+            prefetch(furthest, pack + AHEAD);
+        }
+        [here, rates]
+    }
+
+    /// Advances what the targets hold.
+    #[inline(always)]
+    fn onto(self, targets: [&mut [V::Vector]; F]) {
+        let advance = self.row.advance;
+        for pack in 0..self.count {
+            let [here, rates] = self.rates(pack);
+            for f in 0..F {
+                prefetch(targets[f], pack + AHEAD);
+                let before = V::of(here[f].simd(), targets[f][pack]);
+                targets[f][pack] = advance.onto(here[f], rates[f], before).vector();
+            }
+        }
+    }
+}
+
+impl<
+    V: Pack<Scalar: Real>,
+    E,
+    const F: usize,
+    const G: usize,
+    const R: usize,
+    const N: usize,
+    const M: usize,
+    const K: usize,
+> Fill<V::Vector, F> for Packs<'_, V, E, F, G, R, N, M, K>
+where
+    E: Equation<V::Scalar, F, G>,
+{
+    #[inline(always)]
+    fn fill(self, targets: &mut Targets<'_, V::Vector, F>) {
+        let advance = self.row.advance;
+        for pack in 0..self.count {
+            let [here, rates] = self.rates(pack);
+            let mut next = [here[0].vector(); F];
+            for f in 0..F {
+                next[f] = advance.to(here[f], rates[f]).vector();
+            }
+            targets.write(pack, next);
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The stage that evaluates an equation on the rows of a tile.
 
 use finegrain_framework::instructions;
-use finegrain_framework::pack::Pack;
+use finegrain_framework::pack::{Bypass, Pack};
 use finegrain_framework::space::Grid;
 use finegrain_framework::space::grid::{self, RowsMut};
 use finegrain_framework::{
@@ -83,7 +83,7 @@ where
 {
     #[inline(always)]
     fn run<V: Pack<Scalar = T>>(&self, simd: V::Simd, work: Work<'_, '_, T, F>) {
-        let Work { near, out, scratch, moment } = work;
+        let Work { near, out, scratch, moment, bypass } = work;
         let nx = near.domain().shape()[0];
         let axes = self.lines[0].iter().flatten().count();
         let weights = Weights::<V, R>::new(simd, axes, &self.coefficients);
@@ -98,11 +98,15 @@ where
         };
         scratch.ghosts.resize_with((F + G) * 4 * DEEPEST, Vec::new);
         scratch.data.resize_with(F * 3, Vec::new);
-        scratch.window.resize(F + G, crate::row::EMPTY.map(|()| T::zero()));
+        scratch.window.resize(F + G, Window::default());
         let closed = self.lines[0][0].as_ref().map_or(0, Line::closed);
-        let fields: [_; F] = std::array::from_fn(|f| Rows::new(near, self.unknowns[f]));
-        let given: [_; G] = std::array::from_fn(|g| Rows::new(near, self.given[g]));
+        let mut fields: [_; F] =
+            std::array::from_fn(|f| Rows::<_, R, N>::new(near, self.unknowns[f]));
+        let mut given: [_; G] = std::array::from_fn(|g| Rows::<_, R, N>::new(near, self.given[g]));
         for (j, k) in near.sub_domain().rows() {
+            for rows in fields.iter_mut().chain(&mut given) {
+                rows.turn_to(k as isize);
+            }
             self.fill(near, scratch, (j, k), moment.stage_time);
             let Scratch { ghosts, data, window } = &mut *scratch;
             let row = Row {
@@ -112,6 +116,7 @@ where
                 data,
                 advance,
                 dt,
+                bypass,
                 closed,
             };
             let mut out = out.each_mut().map(|rows| rows.row(j, k));
@@ -192,7 +197,7 @@ where
     /// The rows around row `(j, k)` of field `f`, unknowns first.
     fn cross<'a>(
         &'a self,
-        rows: &Rows<'a, T>,
+        rows: &Rows<'a, T, R, N>,
         ghosts: &'a [Vec<T>],
         data: &'a [Vec<T>],
         f: usize,
@@ -228,8 +233,9 @@ where
     }
 }
 
-/// Rows of one column, of which those of the tile itself are found without a search.
-struct Rows<'a, T> {
+/// Rows of one column, of which those of the tile itself and what lies straight beside them are found without
+/// a search for each.
+struct Rows<'a, T, const R: usize, const N: usize> {
     own: Part<'a, T>,
     near: grid::Rows<'a, T>,
     /// Points of a row.
@@ -237,23 +243,61 @@ struct Rows<'a, T> {
     /// First row and plane of the tile, and how many.
     first: [isize; 2],
     count: [isize; 2],
+    /// The plane that the following are for.
+    plane: Option<isize>,
+    /// Rows as the tile's in planes up to `R` away; empty where there are none.
+    beside: [&'a [T]; N],
+    /// In the plane, the `R` rows before the tile's, nearest first, and those after.
+    beyond: [[&'a [T]; R]; 2],
 }
 
-impl<'a, T: Real> Rows<'a, T> {
+impl<'a, T: Real, const R: usize, const N: usize> Rows<'a, T, R, N> {
     fn new(near: &Near<'a, Grid>, column: State<T>) -> Self {
         let mut rows = near.sub_domain().rows().map(|(j, k)| [j as isize, k as isize]);
         let first = rows.next().unwrap_or_default();
         let last = rows.last().unwrap_or(first);
         let count = [last[0] - first[0] + 1, last[1] - first[1] + 1];
         let length = near.domain().shape()[0];
-        Self { own: near.state(column).own(), near: near.rows(column), length, first, count }
+        let (own, near) = (near.state(column).own(), near.rows(column));
+        let (beside, beyond) = ([&[][..]; N], [[&[][..]; R]; 2]);
+        Self { own, near, length, first, count, plane: None, beside, beyond }
+    }
+
+    /// Finds what lies beside the tile's rows of a plane.
+    #[inline]
+    fn turn_to(&mut self, k: isize) {
+        if self.plane == Some(k) {
+            return;
+        }
+        self.plane = Some(k);
+        for (n, beside) in self.beside.iter_mut().enumerate() {
+            *beside = self.near.beside(k + n as isize - R as isize).unwrap_or(&[]);
+        }
+        for by in 0..R {
+            let before = self.first[0] - 1 - by as isize;
+            let after = self.first[0] + self.count[0] + by as isize;
+            self.beyond[0][by] = self.near.get(before, k).unwrap_or(&[]);
+            self.beyond[1][by] = self.near.get(after, k).unwrap_or(&[]);
+        }
     }
 
     #[inline]
     fn row(&self, j: isize, k: isize) -> &'a [T] {
         let [y, z] = [j - self.first[0], k - self.first[1]];
-        if (0..self.count[0]).contains(&y) && (0..self.count[1]).contains(&z) {
+        let is_beside = (0..self.count[0]).contains(&y);
+        if is_beside && (0..self.count[1]).contains(&z) {
             return &self.own.span(z as usize)[y as usize * self.length..][..self.length];
+        }
+        let by = k - self.plane.unwrap_or(k);
+        if is_beside && by.unsigned_abs() <= R {
+            let beside = self.beside[(by + R as isize) as usize];
+            return &beside[y as usize * self.length..][..self.length];
+        }
+        if by == 0 {
+            let [end, depth] = if y < 0 { [0, -1 - y] } else { [1, y - self.count[0]] };
+            if let Some(row) = self.beyond[end as usize].get(depth as usize) {
+                return row;
+            }
         }
         self.near.row(j, k)
     }
@@ -281,6 +325,7 @@ struct Work<'s, 'n, T, const F: usize> {
     out: &'s mut [RowsMut<'n, T>; F],
     scratch: &'s mut Scratch<T>,
     moment: &'s Moment,
+    bypass: Option<Bypass<'s>>,
 }
 
 /// To be compiled for every instruction set.
@@ -335,7 +380,8 @@ where
         moment: &Moment,
     ) -> Result<(), Fault> {
         let mut out = self.out.map(|rate| rates.rows(rate));
-        let work = Work { near, out: &mut out, scratch, moment };
+        let bypass = rates.bypass();
+        let work = Work { near, out: &mut out, scratch, moment, bypass };
         instructions::dispatch(Task { sweep: self, work });
         Ok(())
     }

@@ -36,6 +36,26 @@ impl<'a, T> Rows<'a, T> {
     pub fn get(&self, j: isize, k: isize) -> Option<&'a [T]> {
         Some(self.column.at(self.near.reach_row(j, k)?))
     }
+
+    /// The rows of plane k that lie straight beside the tile's own, one after the other; `None` past a bounded
+    /// end. For stages to which finding rows one by one costs much.
+    ///
+    /// # Panics
+    /// As [`Near::reach_row`].
+    pub fn beside(&self, k: isize) -> Option<&'a [T]> {
+        let (grid, tile) = (self.near.domain(), self.near.sub_domain());
+        let [nx, ny, nz] = grid.shape;
+        let k = wrap(k, nz, grid.periodic[2])?;
+        let j = tile.rows.start;
+        debug_assert!(
+            is_within_reach(&tile, j, k),
+            "plane {k} lies further from the tile than the reach of {}: see GridBuilder::reach",
+            grid.reach
+        );
+        let start = (k * ny + j) * nx;
+        let span = Span { start, end: start + tile.rows.len() * nx };
+        Some(self.column.at(self.near.reach(grid.owner(j, k), span)))
+    }
 }
 
 fn wrap(i: isize, n: usize, periodic: bool) -> Option<usize> {
