@@ -8,8 +8,9 @@ mod samples;
 
 use std::f64::consts::TAU;
 
-use finegrain::framework::pack::{Bypass, Fill, Pack, Targets, fill, prefetch};
+use finegrain::framework::pack::{Fill, Pack, Targets, prefetch};
 use finegrain::framework::space::Grid;
+use finegrain::framework::space::grid::RowsOfMut;
 use finegrain::framework::*;
 use finegrain::lbm::{
     Collision, Compiled, Fluid, LatticeKind, Lbm, LbmError, Mesh, Physics, Scheme, Start,
@@ -201,32 +202,30 @@ impl<T: Real> RateStage<Grid> for Copy<T> {
         _: &mut (),
         _: &Moment,
     ) -> Result<(), Fault> {
-        let bypass = rates.bypass();
         let now = self.now.map(|now| near.rows(now));
-        let mut next = self.next.map(|next| rates.rows(next));
+        let mut next = rates.rows_of(self.next);
         for (j, k) in near.sub_domain().rows() {
             let from = now.each_ref().map(|now| now.row(j as isize, k as isize));
-            let to = next.each_mut().map(|next| next.row(j, k));
-            pulp::Arch::new().dispatch(CopyRow { from, to, bypass });
+            pulp::Arch::new().dispatch(CopyRow { from, to: &mut next, row: (j, k) });
         }
         Ok(())
     }
 }
 
-struct CopyRow<'a, T> {
+struct CopyRow<'a, 'n, T> {
     from: [&'a [T]; COLUMNS],
-    to: [&'a mut [T]; COLUMNS],
-    bypass: Option<Bypass<'a>>,
+    to: &'a mut RowsOfMut<'n, T, COLUMNS>,
+    row: (usize, usize),
 }
 
-impl<T: Real> pulp::WithSimd for CopyRow<'_, T> {
+impl<T: Real> pulp::WithSimd for CopyRow<'_, '_, T> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let from = self.from.map(|from| T::Pack::<S>::packs(simd, from));
-        let to = self.to.map(|to| T::Pack::<S>::packs_mut(simd, to));
-        fill(to, self.bypass, From::<T::Pack<S>>(from));
+        let x = 0..self.from[0].len();
+        self.to.fill::<T::Pack<S>>(simd, self.row, x, From::<T::Pack<S>>(from));
     }
 }
 

@@ -9,8 +9,8 @@
 mod bypass;
 mod prefetch;
 
-pub(crate) use bypass::Fence;
-pub use bypass::{Bypass, Fill, Targets, fill};
+pub(crate) use bypass::{Bypass, Fence, fence};
+pub use bypass::{Fill, Targets};
 pub use prefetch::prefetch;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -27,12 +27,20 @@ impl Fence {
 
 impl Drop for Fence {
     fn drop(&mut self) {
-        #[cfg(target_arch = "x86_64")]
         if self.bytes.is_some() {
-            // SAFETY: part of every x86-64.
-            unsafe { std::arch::x86_64::_mm_sfence() };
+            fence();
         }
     }
+}
+
+/// Makes what this thread has written past the caches visible to others, before whatever it writes next. It
+/// takes as long as memory does: not for every row.
+pub(crate) fn fence() {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: part of every x86-64.
+    unsafe {
+        std::arch::x86_64::_mm_sfence()
+    };
 }
 
 fn widest() -> Option<usize> {
@@ -48,10 +56,10 @@ fn widest() -> Option<usize> {
     None
 }
 
-/// Leave to write past the caches, which a stage has while that pays ([`crate::Rates::bypass`]). It does
-/// not leave its thread, as a fence is one of the thread that has written.
+/// Leave to write past the caches, which a stage has while that pays. It does not leave its thread, as a fence
+/// is one of the thread that has written.
 #[derive(Clone, Copy, Debug)]
-pub struct Bypass<'a> {
+pub(crate) struct Bypass<'a> {
     bytes: usize,
     fence: PhantomData<(&'a Fence, *const ())>,
 }
@@ -69,41 +77,32 @@ pub trait Fill<V, const N: usize> {
     fn fill(self, targets: &mut Targets<'_, V, N>);
 }
 
-/// Lets `task` write rows of vectors side by side, past the caches if there is leave to and the
-/// processor can. When it returns, or unwinds, what was written is visible to others.
-///
-/// Worth it past the caches only if whole lines are written, one vector after the other.
-#[inline(always)]
-pub fn fill<V: Pod, const N: usize>(
-    to: [&mut [V]; N],
-    bypass: Option<Bypass<'_>>,
-    task: impl Fill<V, N>,
-) {
-    let mut is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>());
-    for to in &to {
-        is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
-    }
-    // Lent, so that nobody can keep it from being dropped here.
-    task.fill(&mut Targets { to, is_past, fence: PhantomData });
-}
-
-/// Rows of vectors that are written side by side, inside [`fill`].
+/// Rows of vectors to be written side by side, past the caches if that pays; see
+/// [`RowsOfMut::fill`](crate::space::grid::RowsOfMut::fill).
 #[derive(Debug)]
 pub struct Targets<'a, V, const N: usize> {
     to: [&'a mut [V]; N],
     /// Vectors are as long as the processor writes at once, and aligned.
     is_past: bool,
-    fence: PhantomData<*const Fence>,
+    thread: PhantomData<*const ()>,
 }
 
-impl<V, const N: usize> Drop for Targets<'_, V, N> {
+impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
+    /// # Safety
+    /// If this is to be past the caches ([`Targets::is_past`]) nobody but this thread sees the rows, and nobody who
+    /// could show them to another one, before it has called [`fence`].
     #[inline(always)]
-    fn drop(&mut self) {
-        #[cfg(target_arch = "x86_64")]
-        if self.is_past {
-            // SAFETY: part of every x86-64.
-            unsafe { std::arch::x86_64::_mm_sfence() };
+    pub(crate) unsafe fn new(to: [&'a mut [V]; N], bypass: Option<Bypass<'_>>) -> Self {
+        let mut is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>());
+        for to in &to {
+            is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
         }
+        Self { to, is_past, thread: PhantomData }
+    }
+
+    /// Whether they are written past the caches.
+    pub(crate) fn is_past(&self) -> bool {
+        self.is_past
     }
 }
 
@@ -119,12 +118,10 @@ impl<V: Pod, const N: usize> Targets<'_, V, N> {
             use std::arch::x86_64::{__m256i, __m512i, _mm256_stream_si256, _mm512_stream_si512};
             for n in 0..N {
                 let to = std::ptr::from_mut(&mut self.to[n][i]);
-                // SAFETY: `fill` saw leave for as many bytes as a vector has, which there is only on
+                // SAFETY: `new` saw leave for as many bytes as a vector has, which there is only on
                 // processors with these instructions, and that vectors are aligned. This one is borrowed
-                // exclusively, and plain bytes. Nobody else sees it before the fence: that of `drop`, on
-                // this thread, which `self` does not leave. `fill` drops it, while the rows are still
-                // borrowed: it only lends it, for a lifetime of its own, so that it cannot be exchanged
-                // for another one.
+                // exclusively, and plain bytes. Nobody else sees it before a fence on this thread, which
+                // `self` does not leave: who called `new` promised that.
                 unsafe {
                     match size_of::<V>() {
                         64 => _mm512_stream_si512(to.cast::<__m512i>(), bytemuck::cast(values[n])),
@@ -168,7 +165,9 @@ mod tests {
                 let fence = Fence::new(pays);
                 assert!(pays || fence.bypass().is_none());
                 let places = bytemuck::cast_slice_mut::<u8, V>(&mut lines.0[size..]);
-                fill([places], fence.bypass(), All(value));
+                // SAFETY: they stay on this thread.
+                let mut targets = unsafe { Targets::new([places], fence.bypass()) };
+                All(value).fill(&mut targets);
                 assert!(lines.0[..size].iter().all(|&b| b == 7));
                 assert!(
                     bytemuck::cast_slice::<u8, V>(&lines.0[size..]).iter().all(|v| *v == value)

@@ -53,7 +53,7 @@ impl<'a, D: Domain> Rates<'a, D> {
 
     /// Leave to write past the caches; `None` unless all columns are far larger than these and
     /// the whole domain is stepped before anybody comes back to what is written here.
-    pub fn bypass(&self) -> Option<Bypass<'a>> {
+    pub(crate) fn bypass(&self) -> Option<Bypass<'a>> {
         self.bypass
     }
 

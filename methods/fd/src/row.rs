@@ -6,7 +6,8 @@
 //! instruction set. A number has the same bits however it was computed.
 
 use finegrain_framework::Real;
-use finegrain_framework::pack::{Bypass, Fill, MOST_LANES, Pack, Packed, Targets, fill, prefetch};
+use finegrain_framework::pack::{Fill, MOST_LANES, Pack, Packed, Targets, prefetch};
+use finegrain_framework::space::grid::RowsOfMut;
 
 use crate::around::{Around, At, Closed, Weights};
 use crate::equation::Equation;
@@ -94,10 +95,21 @@ pub(crate) struct Row<
     pub data: &'a [Vec<T>],
     pub advance: Advance<T>,
     pub dt: T,
-    /// Leave to write past the caches.
-    pub bypass: Option<Bypass<'a>>,
     /// Points next to either end that have coefficients of their own along x.
     pub closed: usize,
+}
+
+/// A row of what is written.
+pub(crate) struct Out<'a, 'n, T, const F: usize> {
+    pub rows: &'a mut RowsOfMut<'n, T, F>,
+    /// Its number in its plane, and that of the plane.
+    pub row: (usize, usize),
+}
+
+impl<T, const F: usize> Out<'_, '_, T, F> {
+    fn row(&mut self) -> [&mut [T]; F] {
+        self.rows.row(self.row.0, self.row.1)
+    }
 }
 
 /// Where packs are: `count` from `x` on, in the row itself, or in the window, from `offset` on.
@@ -132,7 +144,7 @@ where
         weights: &Weights<V, R>,
         window: &mut [Window<T>],
         [start, end]: [usize; 2],
-        out: &mut [&mut [T]; F],
+        out: &mut Out<'_, '_, T, F>,
     ) {
         // Where packs read nothing beyond the row, in whole packs from its beginning.
         let first = if start >= R { start } else { R.next_multiple_of(V::LANES) };
@@ -152,13 +164,17 @@ where
                 self.copy(window, place.x, R, place.count * V::LANES + 2 * R);
             }
             let again = done - place.x;
-            let mut kept = [[T::zero(); MOST_LANES]; F];
-            for f in 0..F {
-                kept[f][..again].copy_from_slice(&out[f][place.x..done]);
-            }
-            self.run::<V, N>(simd, weights, window, place, out);
-            for f in 0..F {
-                out[f][place.x..done].copy_from_slice(&kept[f][..again]);
+            if again == 0 {
+                self.run::<V, N>(simd, weights, window, place, out);
+            } else {
+                let mut kept = [[T::zero(); MOST_LANES]; F];
+                for (kept, row) in kept.iter_mut().zip(out.row()) {
+                    kept[..again].copy_from_slice(&row[place.x..done]);
+                }
+                self.run::<V, N>(simd, weights, window, place, out);
+                for (kept, row) in kept.iter().zip(out.row()) {
+                    row[place.x..done].copy_from_slice(&kept[..again]);
+                }
             }
             done = place.x + place.count * V::LANES;
         }
@@ -170,7 +186,7 @@ where
         weights: &Weights<One<T>, R>,
         window: &mut [Window<T>],
         [start, end]: [usize; 2],
-        out: &mut [&mut [T]; F],
+        out: &mut Out<'_, '_, T, F>,
     ) {
         let nx = self.unknowns[0].here.len();
         let margin = self.closed.max(M / 2);
@@ -228,7 +244,7 @@ where
         weights: &Weights<V, R>,
         window: &[Window<T>],
         place: Place,
-        out: &mut [&mut [T]; F],
+        out: &mut Out<'_, '_, T, F>,
     ) {
         let Place { x, count, .. } = place;
         let mut unknowns = [self.around::<V, K>(simd, 0, window, place); F];
@@ -240,13 +256,12 @@ where
             given[g] = self.around::<V, K>(simd, F + g, window, place);
         }
         let length = count * V::LANES;
-        let targets =
-            out.each_mut().map(|row| &mut V::packs_mut(simd, &mut row[x..x + length])[..count]);
         let task = Packs { row: self, weights, unknowns, given, count };
         if self.advance.is_onto() {
-            task.onto(targets);
+            let rows = out.row();
+            task.onto(rows.map(|row| &mut V::packs_mut(simd, &mut row[x..x + length])[..count]));
         } else {
-            fill(targets, self.bypass, task);
+            out.rows.fill::<V>(simd, out.row, x..x + length, task);
         }
     }
 

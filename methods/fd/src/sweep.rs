@@ -1,9 +1,9 @@
 //! The stage that evaluates an equation on the rows of a tile.
 
 use finegrain_framework::instructions;
-use finegrain_framework::pack::{Bypass, Pack};
+use finegrain_framework::pack::Pack;
 use finegrain_framework::space::Grid;
-use finegrain_framework::space::grid::{self, RowsMut};
+use finegrain_framework::space::grid::{self, RowsOfMut};
 use finegrain_framework::{
     ColumnId, Fault, Handle, Moment, Near, Part, Rate, RateStage, Rates, Real, State,
 };
@@ -11,7 +11,7 @@ use finegrain_framework::{
 use crate::around::{Coefficients, Weights};
 use crate::equation::Equation;
 use crate::line::{Ends, Line};
-use crate::row::{Advance, Cross, Row, Window};
+use crate::row::{Advance, Cross, Out, Row, Window};
 
 /// What becomes of the rate of change that an equation gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +83,7 @@ where
 {
     #[inline(always)]
     fn run<V: Pack<Scalar = T>>(&self, simd: V::Simd, work: Work<'_, '_, T, F>) {
-        let Work { near, out, scratch, moment, bypass } = work;
+        let Work { near, out, scratch, moment } = work;
         let nx = near.domain().shape()[0];
         let axes = self.lines[0].iter().flatten().count();
         let weights = Weights::<V, R>::new(simd, axes, &self.coefficients);
@@ -116,10 +116,9 @@ where
                 data,
                 advance,
                 dt,
-                bypass,
                 closed,
             };
-            let mut out = out.each_mut().map(|rows| rows.row(j, k));
+            let mut out = Out { rows: out, row: (j, k) };
             if row.is_open() && nx - 2 * closed >= V::LANES.max(2 * R) {
                 row.points(&single, window, [0, closed], &mut out);
                 row.packs::<V>(simd, &weights, window, [closed, nx - closed], &mut out);
@@ -322,10 +321,9 @@ impl<T: Real> Line<T> {
 /// A tile's share.
 struct Work<'s, 'n, T, const F: usize> {
     near: &'s Near<'n, Grid>,
-    out: &'s mut [RowsMut<'n, T>; F],
+    out: &'s mut RowsOfMut<'n, T, F>,
     scratch: &'s mut Scratch<T>,
     moment: &'s Moment,
-    bypass: Option<Bypass<'s>>,
 }
 
 /// To be compiled for every instruction set.
@@ -379,9 +377,8 @@ where
         scratch: &mut Scratch<T>,
         moment: &Moment,
     ) -> Result<(), Fault> {
-        let mut out = self.out.map(|rate| rates.rows(rate));
-        let bypass = rates.bypass();
-        let work = Work { near, out: &mut out, scratch, moment, bypass };
+        let mut out = rates.rows_of(self.out);
+        let work = Work { near, out: &mut out, scratch, moment };
         instructions::dispatch(Task { sweep: self, work });
         Ok(())
     }

@@ -2,7 +2,10 @@
 
 use std::marker::PhantomData;
 
-use finegrain_framework::pack::{Bypass, Fill, Pack, Targets, fill, prefetch};
+use std::ops::Range;
+
+use finegrain_framework::pack::{Fill, Pack, Targets, prefetch};
+use finegrain_framework::space::grid::RowsOfMut;
 use finegrain_framework::{Real, instructions};
 
 use crate::collision::Collide;
@@ -19,13 +22,7 @@ pub(crate) type Varying<'a, T> = Option<[&'a [T]; 3]>;
 /// Collides sites next to one another, as many as make whole packs.
 pub(crate) trait Collider<T, const Q: usize>: Send + Sync {
     /// From the populations that arrive to those that leave, elsewhere in memory.
-    fn pull(
-        &self,
-        from: &[&[T]; Q],
-        to: [&mut [T]; Q],
-        acceleration: Varying<'_, T>,
-        bypass: Option<Bypass<'_>>,
-    );
+    fn pull(&self, from: &[&[T]; Q], to: Stretch<'_, '_, T, Q>, acceleration: Varying<'_, T>);
 
     /// In place, where what leaves takes the place of what arrived from there: that of the opposite
     /// velocity.
@@ -42,14 +39,8 @@ pub(crate) struct Kernel<L, C> {
 }
 
 impl<T: Real, L: Lattice<Q>, C: Collide<T>, const Q: usize> Collider<T, Q> for Kernel<L, C> {
-    fn pull(
-        &self,
-        from: &[&[T]; Q],
-        to: [&mut [T]; Q],
-        acceleration: Varying<'_, T>,
-        bypass: Option<Bypass<'_>>,
-    ) {
-        let memory = Apart { from, to, bypass };
+    fn pull(&self, from: &[&[T]; Q], to: Stretch<'_, '_, T, Q>, acceleration: Varying<'_, T>) {
+        let memory = Apart { from, to };
         instructions::dispatch(Task { kernel: self, memory, acceleration });
     }
 
@@ -80,25 +71,29 @@ trait Slots<V: Pack, const Q: usize> {
     fn leave(&mut self, i: usize, f: [V; Q]);
 }
 
-/// Two sets of columns.
-struct Apart<'a, 'b, T, const Q: usize> {
-    from: &'b [&'a [T]; Q],
-    to: [&'a mut [T]; Q],
-    bypass: Option<Bypass<'a>>,
+/// A part of a row.
+pub(crate) struct Stretch<'a, 'n, T, const Q: usize> {
+    pub rows: &'a mut RowsOfMut<'n, T, Q>,
+    /// Its number in its plane, and that of the plane.
+    pub row: (usize, usize),
+    pub x: Range<usize>,
 }
 
-impl<T: Real, const Q: usize> Memory<T, Q> for Apart<'_, '_, T, Q> {
+/// Two sets of columns.
+struct Apart<'a, 'b, 'n, T, const Q: usize> {
+    from: &'b [&'a [T]; Q],
+    to: Stretch<'b, 'n, T, Q>,
+}
+
+impl<T: Real, const Q: usize> Memory<T, Q> for Apart<'_, '_, '_, T, Q> {
     #[inline(always)]
     fn lend<V: Pack<Scalar = T>>(self, simd: V::Simd, task: impl Pass<V, Q>) {
         let mut from: [&[V::Vector]; Q] = [&[]; Q];
         for q in 0..Q {
             from[q] = V::packs(simd, self.from[q]);
         }
-        let mut to = none::<V::Vector, Q>();
-        for (packs, row) in to.iter_mut().zip(self.to) {
-            *packs = V::packs_mut(simd, row);
-        }
-        fill(to, self.bypass, From::<V, _, Q> { from, task });
+        let Stretch { rows, row, x } = self.to;
+        rows.fill::<V>(simd, row, x, From::<V, _, Q> { from, task });
     }
 }
 

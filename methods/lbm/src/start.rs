@@ -7,7 +7,7 @@ use crate::acceleration::Acceleration;
 use crate::around::wrap;
 use crate::error::LbmError;
 use crate::in_place;
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, opposite};
 use crate::physics::{Fluid, Streaming};
 use crate::relaxation::Relaxation;
 use crate::row::{Group, Local};
@@ -56,31 +56,29 @@ impl Start {
         let [nx, ny, nz] = acceleration.mesh.shape;
         let site = |point: usize| [point % nx, point / nx % ny, point / (nx * ny)];
         let fluid_sites: Vec<_> = (0..solid.len()).filter(|&point| solid[point] == 0).collect();
-        let mut before: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
-        let mut after = before;
+        let mut sites: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
         let mut here: [Group<T>; 3] = [[T::zero(); MOST_LANES]; 3];
         for points in fluid_sites.chunks(MOST_LANES) {
             for (place, &point) in points.iter().enumerate() {
                 let f =
                     self.populations::<L, T, Q>(relaxation, fluid, acceleration, site(point))?;
                 for q in 0..Q {
-                    before[q][place] = f[q];
+                    sites[q][place] = f[q];
                 }
                 let given = acceleration.at(site(point), 0.0);
                 for a in 0..3 {
                     here[a][place] = T::of(given[a]);
                 }
             }
-            let (from, to) =
-                (before.each_ref().map(|f| &f[..]), after.each_mut().map(|f| &mut f[..]));
-            local.collider.pull(&from, to, Some(here.each_ref().map(|a| &a[..])), None);
+            let acceleration = Some(here.each_ref().map(|a| &a[..]));
+            local.collider.exchange(sites.each_mut().map(|f| &mut f[..]), acceleration);
             for q in 0..Q {
                 let kept = match streaming {
                     Streaming::TwoGrids => [0; 3],
                     Streaming::InPlace => in_place::kept(L::VELOCITIES[q], q),
                 };
                 let values = columns.values_mut(populations[q]);
-                for (f, &point) in after[q].iter().zip(points) {
+                for (f, &point) in sites[opposite(q)].iter().zip(points) {
                     let [x, y, z] = site(point);
                     let (x, y) = (wrap(x as i32 + kept[0], nx), wrap(y as i32 + kept[1], ny));
                     values[(wrap(z as i32 + kept[2], nz) * ny + y) * nx + x] = *f;

@@ -13,9 +13,10 @@ use finegrain_framework::{
 };
 
 use crate::around::{Around, wrap};
+use crate::kernel::Stretch;
 use crate::lattice::{Lattice, opposite};
 use crate::physics::Streaming;
-use crate::row::{Group, Local, Scratch, copy_around, none};
+use crate::row::{Group, Local, Scratch, copy_around};
 
 /// Streams and collides.
 pub(crate) struct Stream<T, L, const Q: usize> {
@@ -47,7 +48,6 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> RateStage<Grid> for Stream<T, L, Q>
         let [nx, ny, _] = near.domain().shape();
         // Populations are stored after the collision of their step.
         let time = moment.time + moment.dt;
-        let bypass = rates.bypass();
         let views: [View<'_, T>; Q] = self.now.map(|column| near.state(column));
         let mut next = rates.rows_of(self.next);
         let mut group: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
@@ -63,7 +63,6 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> RateStage<Grid> for Stream<T, L, Q>
             for q in 0..Q {
                 from[q] = around.source(q);
             }
-            let mut to = next.row(j, k);
             for [start, end] in runs.iter().flat_map(|run| run.parts::<T>(nx)) {
                 let mut sources: [&[T]; Q] = [&[]; Q];
                 for (q, wrapped) in group.iter_mut().enumerate() {
@@ -74,12 +73,13 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> RateStage<Grid> for Stream<T, L, Q>
                         &wrapped[..end - start]
                     });
                 }
-                let mut targets = none::<T, Q>();
-                for (target, row) in targets.iter_mut().zip(&mut to) {
-                    *target = &mut row[start..end];
-                }
-                collider.pull(&sources, targets, scratch.varying(start, end), bypass);
+                let to = Stretch { rows: &mut next, row: (j, k), x: start..end };
+                collider.pull(&sources, to, scratch.varying(start, end));
             }
+            if singles.is_empty() {
+                continue;
+            }
+            let mut to = next.row(j, k);
             for singles in singles.chunks(MOST_LANES) {
                 for (q, arrived) in group.iter_mut().enumerate() {
                     for (f, single) in arrived.iter_mut().zip(singles) {

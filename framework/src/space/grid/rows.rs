@@ -5,6 +5,8 @@ use std::ops::Range;
 use super::{Grid, Tile};
 use crate::columns::{Element, Handle, Rate, State};
 use crate::domain::Span;
+use crate::pack::{Bypass, Fill, Pack};
+use crate::real::Real;
 use crate::view::{Near, Own, Part, PartMut, Rates, Reach, View};
 
 /// Rows of one column, read only, as far as they can be seen from one tile.
@@ -123,6 +125,8 @@ pub struct RowsOfMut<'a, T, const N: usize> {
     parts: [PartMut<'a, T>; N],
     /// Of each column, whether these are other rows than the tile's.
     is_shifted: [bool; N],
+    /// Leave to write past the caches.
+    bypass: Option<Bypass<'a>>,
 }
 
 impl<T, const N: usize> RowsOfMut<'_, T, N> {
@@ -140,6 +144,30 @@ impl<T, const N: usize> RowsOfMut<'_, T, N> {
                 if is_shifted { shifted(part, span, range) } else { &mut part.span(span)[range] };
         }
         rows
+    }
+}
+
+impl<T: Real, const N: usize> RowsOfMut<'_, T, N> {
+    /// Lets `task` write points `x` of row j of plane k of each column, vector by vector; what is left over behind
+    /// the last whole vector stays as it is. It goes past the caches where that pays: if all columns are far
+    /// larger than these, and the whole domain is stepped before anybody comes back here. So whole lines should be
+    /// written, one vector after the other, and [`RowsOfMut::row`] not be asked for rows in between.
+    ///
+    /// # Panics
+    /// As [`RowsOfMut::row`], if the row has no such points, or if a column is owned with an offset.
+    #[inline(always)]
+    pub fn fill<P: Pack<Scalar = T>>(
+        &mut self,
+        simd: P::Simd,
+        (j, k): (usize, usize),
+        x: Range<usize>,
+        task: impl Fill<P::Vector, N>,
+    ) {
+        assert!(!self.is_shifted.contains(&true), "rows are filled without offset");
+        let (span, row) = place(&self.tile, j, k);
+        assert!(x.end <= row.len(), "the row has {} points", row.len());
+        let range = row.start + x.start..row.start + x.end;
+        PartMut::fill::<P, N>(simd, &mut self.parts, (span, range), self.bypass, task);
     }
 }
 
@@ -235,6 +263,7 @@ impl<'a> Rates<'a, Grid> {
         RowsOfMut {
             tile: crate::Domain::sub_domain(self.domain(), self.id()),
             is_shifted: [false; N],
+            bypass: self.bypass(),
             parts: columns.map(|column| self.column(column)),
         }
     }
@@ -261,6 +290,7 @@ impl<'a> Own<'a, Grid> {
         RowsOfMut {
             tile: self.sub_domain(),
             is_shifted: columns.map(|column| self.is_shifted(column.id())),
+            bypass: None,
             parts: columns.map(|column| self.state_mut(column)),
         }
     }
