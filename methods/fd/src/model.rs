@@ -276,12 +276,13 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
 }
 
 /// Rows and planes of a tile in space: a stencil reads twice its reach more of both, from planes around that caches do
-/// not hold where they are large, so a tile is to be some times as high and as thick as that; `None` in the plane, or
-/// if that left few tiles for workers to balance.
+/// not hold where they are large, so a tile is to be some times as thick as that; and as high as leaves many for workers to
+/// balance, for memory is fast along long stretches. `None` in the plane, or if it were not even as high as thick.
 fn block([_, ny, nz]: [usize; 3], reach: usize) -> Option<[usize; 2]> {
-    let length = (4 * reach).max(8);
-    let tiles = ny.div_ceil(length) * nz.div_ceil(length);
-    (nz > 1 && tiles >= 256).then_some([length, length])
+    const TILES: usize = 256;
+    let planes = (4 * reach).max(8);
+    let rows = ny.div_ceil(TILES.div_ceil(nz.div_ceil(planes)));
+    (nz > 1 && rows >= planes).then_some([rows, planes])
 }
 
 /// Weights of the points along a side in the norm of the difference operators, m.
