@@ -4,6 +4,7 @@
 mod runs;
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use finegrain::scene::{Orders, Precision, Report, Scene};
 
@@ -92,6 +93,22 @@ fn the_largest_slope_of_burgers_equation() {
     assert!(errors["largest_slope"].abs() < 0.005, "{errors:?}");
     assert!(errors["slope_time"].abs() < 0.005, "{errors:?}");
     assert!(errors["velocity_l2"] < 1e-4, "{errors:?}");
+}
+
+/// Of a sine with `n` points a wave the fourth difference is `16 sin^4(pi / n)` times itself, in the middle of a box as
+/// at its ends.
+#[test]
+fn ripples_are_what_is_as_short_as_the_mesh() {
+    for n in [8u32, 16] {
+        let report = run(
+            "taylor-green",
+            &[("resolution", &n.to_string())],
+            Orders { steps: Some(5), ..Orders::default() },
+        );
+        let expected = (PI / f64::from(n)).sin().powi(4);
+        let measured = report.results["ripples"];
+        assert!((measured / expected - 1.0).abs() < 1e-9, "{n}: {measured}, not {expected}");
+    }
 }
 
 #[test]

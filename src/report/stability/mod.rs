@@ -255,11 +255,20 @@ fn tile(entry: &Entry) -> Tile {
     let courant = entry.largest_courant.map_or_else(String::new, |c| format!("CFL x {c}"));
     let (tone, note) = match &entry.outcome {
         Outcome::Survives => (Tone::Good, courant),
-        Outcome::Wrong(symptoms) => (Tone::Doubtful, symptoms.join(", ")),
+        Outcome::Wrong(symptoms) => (Tone::Doubtful, first_of(symptoms)),
         Outcome::BlowsUp(_) => (Tone::Bad, "blows up".to_owned()),
         Outcome::Unfinished => (Tone::Unknown, "not finished".to_owned()),
     };
     Tile { label: entry.variant.to_owned(), note, tone }
+}
+
+/// What a tile has room for; the page has all.
+fn first_of(symptoms: &[String]) -> String {
+    match symptoms {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first, ..] => format!("{first} ..."),
+    }
 }
 
 #[cfg(test)]
@@ -279,6 +288,13 @@ mod tests {
         let text = std::fs::read_to_string(path).unwrap();
         let row = "fd,\"a step, carried\",\"weno5, rk4\",\"survives\",,1.0";
         assert_eq!(text.lines().nth(1), Some(row));
+    }
+
+    #[test]
+    fn a_tile_has_room_for_one_symptom() {
+        let symptoms = ["too fast (mach = 1.188)", "faster than sound"].map(str::to_owned);
+        assert_eq!(first_of(&symptoms[..1]), "too fast (mach = 1.188)");
+        assert_eq!(first_of(&symptoms), "too fast (mach = 1.188) ...");
     }
 
     /// Whatever a flow by lattice Boltzmann is like in the end: if it was as fast as sound it is wrong.
