@@ -430,10 +430,13 @@ impl Scene {
     }
 }
 
-/// Everything that is modelled, a line each, for checkpoints.
+/// Everything that decides the bits, a line each, for checkpoints; other versions of this program may
+/// compute the same things in another order.
 fn description(scene: &str, method: &str, parameters: &Parameters, precision: Precision) -> String {
-    let precision = precision.name();
-    let mut text = format!("scene = {scene}\nmethod = {method}\nprecision = {precision}\n");
+    let (version, precision) = (env!("CARGO_PKG_VERSION"), precision.name());
+    let mut text = format!(
+        "finegrain = {version}\nscene = {scene}\nmethod = {method}\nprecision = {precision}\n"
+    );
     for (name, value) in parameters.iter() {
         text += &format!("{name} = {value}\n");
     }
