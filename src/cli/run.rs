@@ -176,9 +176,16 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         .map_err(|e| if is_files_method { in_file(e.into()) } else { e.into() })?;
 
     if let Some(path) = &arguments.trace {
-        // Before the run, not after it.
-        std::fs::File::create(path)
+        // Before the run, not after it; what is there stays until there is a trace.
+        AtomicFile::create(path)
             .map_err(|why| format!("cannot write trace `{}`: {why}", path.display()))?;
+        if arguments.restart.as_ref() == Some(path) {
+            return Err(format!(
+                "`{}` is the checkpoint to restart from, and not to be the trace",
+                path.display()
+            )
+            .into());
+        }
     }
 
     let requests = Requests::listen()?;
