@@ -16,11 +16,11 @@ use finegrain_framework::space::Grid;
 use finegrain_framework::{ColumnId, Fault, Handle, Moment, Own, Real, State, UpdateStage};
 
 use crate::around::wrap;
-use crate::kernel::{Collider, Varying};
+use crate::kernel::Slots;
 use crate::lattice::Lattice;
 use crate::mesh::Mesh;
-use crate::row::{Group, Local, Scratch, none};
-use crate::sites::{Sites, line};
+use crate::row::{Group, Local, Scratch};
+use crate::sites::Sites;
 
 /// Where the population of velocity `q` is that leaves a site, as seen from there.
 pub(crate) const fn kept(c: [i32; 3], q: usize) -> [i32; 3] {
@@ -77,7 +77,6 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
         let time = moment.time + moment.dt;
         let mut columns = own.rows_of_mut(self.slots);
         let mut group: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
-        let mut copies: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
         for (j, k) in own.sub_domain().rows() {
             let number = k * ny + j;
             let (runs, singles) = (sites.runs(number), sites.singles(number));
@@ -87,19 +86,10 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
             self.local.accelerate(scratch, nx, (j, k), time);
             let mut rows = columns.row(j, k);
             for run in runs {
-                let [inner, last] = run.without_end::<T>(nx);
-                if !inner.is_empty() {
-                    let mut slots = none::<T, Q>();
-                    for (q, row) in rows.iter_mut().enumerate() {
-                        let first = inner.start + ahead::<L, Q>(q);
-                        slots[q] = &mut row[first..first + inner.len()];
-                    }
-                    collider.exchange(slots, scratch.varying(inner.start, inner.end));
-                }
-                if !last.is_empty() {
-                    let varying = scratch.varying(last.start, last.end);
-                    around_the_end::<T, L, Q>(&**collider, &mut rows, varying, &mut copies);
-                }
+                let run = run.start as usize..run.end as usize;
+                let varying = scratch.varying(run.start, run.end);
+                let ahead = const { &ahead(L::VELOCITIES) };
+                collider.exchange(Slots { rows: &mut rows, sites: run, ahead }, varying);
             }
             for singles in singles.chunks(MOST_LANES) {
                 let place = |x: u32, q: usize| wrap(x as i32 + found(L::VELOCITIES[q], q)[0], nx);
@@ -122,38 +112,16 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
     }
 }
 
-/// How far ahead along x a site finds what arrives with velocity `q`: at itself or the next one, as the first
-/// of a pair of velocities never goes back.
-const fn ahead<L: Lattice<Q>, const Q: usize>(q: usize) -> usize {
-    found(L::VELOCITIES[q], q)[0] as usize
-}
-
-/// Collides the line of sites at the end of a row. Slots ahead of it are around the end and lent as copies.
-fn around_the_end<T: Real, L: Lattice<Q>, const Q: usize>(
-    collider: &dyn Collider<T, Q>,
-    rows: &mut [&mut [T]; Q],
-    varying: Varying<'_, T>,
-    copies: &mut [Group<T>; Q],
-) {
-    // Known when this is compiled, so that copies are a few instructions.
-    let (first, most) = (rows[0].len() - line::<T>(), line::<T>() - 1);
-    let mut slots = none::<T, Q>();
-    for (q, (copy, row)) in copies.iter_mut().zip(&mut *rows).enumerate() {
-        slots[q] = if ahead::<L, Q>(q) == 0 {
-            &mut row[first..]
-        } else {
-            copy[..most].copy_from_slice(&row[first + 1..]);
-            copy[most] = row[0];
-            &mut copy[..=most]
-        };
+/// How far ahead along x a site finds what arrives with each velocity: at itself or the next one, as the first of
+/// a pair of velocities never goes back.
+const fn ahead<const Q: usize>(velocities: [[i32; 3]; Q]) -> [usize; Q] {
+    let mut ahead = [0; Q];
+    let mut q = 0;
+    while q < Q {
+        ahead[q] = found(velocities[q], q)[0] as usize;
+        q += 1;
     }
-    collider.exchange(slots, varying);
-    for (q, (copy, row)) in copies.iter().zip(rows).enumerate() {
-        if ahead::<L, Q>(q) > 0 {
-            row[first + 1..].copy_from_slice(&copy[..most]);
-            row[0] = copy[most];
-        }
-    }
+    ahead
 }
 
 /// The slots of a pair of velocities at one place, where bodies turn back half-way what the one or the other

@@ -45,13 +45,6 @@ impl Run {
         let last = if end == nx { first.max(end - line::<T>()) } else { end };
         [[first, last], [last, end], [start, first]].into_iter().filter(|[start, end]| start < end)
     }
-
-    /// The run without a line at the end of its row of `nx` sites, and that line; either may be empty.
-    pub fn without_end<T>(self, nx: usize) -> [Range<usize>; 2] {
-        let (start, end) = (self.start as usize, self.end as usize);
-        let last = if end == nx { end - line::<T>() } else { end };
-        [start..last, last..end]
-    }
 }
 
 /// Scalars in a line of the cache, where columns begin: packs of runs lie in lines, so that they are
