@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clap::Args;
-use finegrain::scene::{SCENES, Scene};
+use finegrain::scene::{Method, SCENES, Scene};
 
 use super::CommandError;
 
@@ -12,12 +12,22 @@ use super::CommandError;
 pub struct ScenesArguments {
     /// A scene, to see its parameters with their defaults and ranges; all scenes, a line each, without.
     scene: Option<String>,
+    /// Only the parameters for this numerical method.
+    #[arg(long, requires = "scene")]
+    method: Option<String>,
 }
 
 /// Lists all scenes, or the parameters of one.
 pub fn scenes(arguments: &ScenesArguments, out: &mut impl Write) -> Result<(), CommandError> {
     match &arguments.scene {
-        Some(name) => describe(Scene::find(name)?, out)?,
+        Some(name) => {
+            let scene = Scene::find(name)?;
+            let methods = match &arguments.method {
+                Some(name) => std::slice::from_ref(scene.method(Some(name))?),
+                None => scene.methods,
+            };
+            describe(scene, methods, out)?;
+        }
         None => {
             for scene in SCENES {
                 let methods: Vec<_> = scene.methods.iter().map(|method| method.name).collect();
@@ -29,9 +39,9 @@ pub fn scenes(arguments: &ScenesArguments, out: &mut impl Write) -> Result<(), C
     Ok(())
 }
 
-fn describe(scene: &Scene, out: &mut impl Write) -> std::io::Result<()> {
+fn describe(scene: &Scene, methods: &[Method], out: &mut impl Write) -> std::io::Result<()> {
     writeln!(out, "{}: {}", scene.name, scene.summary)?;
-    for method in scene.methods {
+    for method in methods {
         writeln!(out, "\n--method {}", method.name)?;
         for parameter in (method.parameters)() {
             let (name, default) = (parameter.name, parameter.default().to_string());

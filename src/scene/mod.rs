@@ -76,7 +76,8 @@ impl Precision {
 pub struct Orders {
     /// How workers meet.
     pub schedule: Schedule,
-    /// Number of workers; all cores if `None`.
+    /// Number of workers; if `None` as many as there are cores, but one at most for every
+    /// [`POINTS_PER_WORKER`] points.
     pub workers: Option<usize>,
     /// End after so many steps.
     pub steps: Option<u64>,
@@ -105,17 +106,22 @@ pub struct Orders {
 /// The last parts of each worker that a trace shows.
 const TRACED: usize = 200_000;
 
+/// Fewest points that are worth a worker: with fewer, what workers wait for each other in every step takes longer than
+/// what they save. Measured with lattice Boltzmann, of which two workers are faster than one from some 8,000 points on.
+pub const POINTS_PER_WORKER: usize = 4000;
+
 impl Orders {
-    /// Settings of a simulation for these orders.
-    pub fn settings(&self) -> Settings {
+    /// Settings of a simulation of so many points for these orders.
+    pub fn settings(&self, points: usize) -> Settings {
         let trace = if self.trace.is_some() { TRACED } else { 0 };
         let settings = Settings { schedule: self.schedule, trace, ..Settings::default() };
-        Settings { workers: self.workers.unwrap_or(settings.workers), ..settings }
+        let worth = (points / POINTS_PER_WORKER).clamp(1, settings.workers.max(1));
+        Settings { workers: self.workers.unwrap_or(worth), ..settings }
     }
 
     /// A simulation of `model` for these orders.
     fn simulation<D: Domain>(&self, model: Model<D>) -> Result<Simulation<D>, SceneError> {
-        let settings = self.settings();
+        let settings = self.settings(model.columns.points());
         let workers = settings.workers;
         Simulation::new(model, settings).map_err(|cause| SceneError::Workers { workers, cause })
     }
@@ -392,8 +398,8 @@ impl Scene {
     pub fn set<'a>(
         &self,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
-    ) -> Result<Parameters, ParameterError> {
-        Parameters::new(self.name, &(self.methods[0].parameters)(), settings)
+    ) -> Result<Parameters, SceneError> {
+        self.set_for(None, settings)
     }
 
     /// Sets parameters of a method, the default one if `None`.
@@ -405,8 +411,27 @@ impl Scene {
         method: Option<&str>,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Parameters, SceneError> {
-        let declared = (self.method(method)?.parameters)();
-        Ok(Parameters::new(self.name, &declared, settings)?)
+        let method = self.method(method)?;
+        Parameters::new(&(method.parameters)(), settings).map_err(|mut error| {
+            if let ParameterError::Unknown { name, elsewhere, .. } = &mut error {
+                *elsewhere = self.methods_with(name);
+            }
+            self.with(method, error.into())
+        })
+    }
+
+    /// The methods for which the scene has this parameter, in brackets; nothing if for none.
+    fn methods_with(&self, name: &str) -> String {
+        let has = |method: &&Method| (method.parameters)().iter().any(|p| p.name == name);
+        let names: Vec<_> = self.methods.iter().filter(has).map(|method| method.name).collect();
+        if names.is_empty() {
+            return String::new();
+        }
+        format!(" (there is one with {})", names.join(" and "))
+    }
+
+    fn with(&self, method: &Method, cause: SceneError) -> SceneError {
+        SceneError::With { scene: self.name, method: method.name, cause: Box::new(cause) }
     }
 
     /// Prepares it for a method, the default one if `None`.
@@ -423,10 +448,12 @@ impl Scene {
         let method = self.method(method)?;
         let mut declared: Vec<_> = (method.parameters)().iter().map(|p| p.name).collect();
         declared.sort_unstable();
-        if !parameters.iter().map(|(name, _)| name).eq(declared) {
-            return Err(SceneError::Parameters { scene: self.name, method: method.name });
-        }
-        (method.prepare)(parameters, precision)
+        let is_its = parameters.iter().map(|(name, _)| name).eq(declared);
+        let prepared = match is_its {
+            true => (method.prepare)(parameters, precision),
+            false => Err(SceneError::Parameters),
+        };
+        prepared.map_err(|cause| self.with(method, cause))
     }
 }
 

@@ -51,7 +51,7 @@ use crate::figure::{Axis, Field};
 
 /// The error for numbers that the method does not compute with.
 fn refused(precision: Precision) -> SceneError {
-    SceneError::Precision { method: "lbm", precision, known: "f32 and f64" }
+    SceneError::Precision { precision, known: "f32 and f64" }
 }
 
 /// Parameters of the collision, which all scenes share.
@@ -264,15 +264,30 @@ impl<T: Compiled> Prepared for LbmScene<T> {
         let relaxation_time = mesh.relaxation_time(fluid.kinematic_viscosity);
         report.results.insert("relaxation_time", relaxation_time);
         let speed = measure::largest_speed(&mut simulation.whole(), &parts);
-        report.results.insert("mach", mesh.mach(speed));
+        report.results.insert("mach_reached", mesh.mach(speed));
         let before = summary.histories.iter().filter_map(|history| history.column("largest_speed"));
         let largest = before.flatten().fold(speed, f64::max);
         report.results.insert("largest_mach", mesh.mach(largest));
         let lbm = Final { parts, mesh, fields };
+        report.notes.extend(unresolved(&lbm.mesh, &fluid));
         flow.judge(&mut report, &summary, simulation, &lbm);
         report.picture = Some(picture(simulation, &lbm, flow.title()));
         Ok(report)
     }
+}
+
+/// What to know of a flow whose smallest eddies, in the plane `sqrt(nu L / U)` (Henshaw, Kreiss & Reyna 1989, Theoret.
+/// Comput. Fluid Dynamics 1, 65-95), and layers at walls, as thin, are smaller than the spacing even if L is the whole mesh:
+/// the grid Reynolds number is then above the number of sites.
+fn unresolved(mesh: &Mesh, fluid: &Fluid) -> Option<String> {
+    let grid_reynolds = fluid.largest_speed * mesh.spacing / fluid.kinematic_viscosity;
+    let sites = mesh.shape.into_iter().max().unwrap_or(1);
+    (grid_reynolds > sites as f64).then(|| {
+        format!(
+            "not resolved: the grid Reynolds number U dx / nu is {grid_reynolds:.3e}, above the {sites} sites along the \
+             mesh, so that the smallest eddies (Henshaw, Kreiss & Reyna 1989) are smaller than the spacing"
+        )
+    })
 }
 
 /// Speed in the plane, or in 3-D in a slice through the middle; undefined in bodies.
