@@ -107,6 +107,17 @@ fn the_last_line_is_json_with_everything_in_it() {
 }
 
 #[test]
+fn only_parameters_with_an_effect_are_in_the_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let has = |more: &[&str], name: &str| {
+        let orders = [&["--method", "lbm", "--steps", "1", "--json"], more].concat();
+        json(&finegrain(&small(&orders), folder.path()))["parameters"].get(name).is_some()
+    };
+    assert!(!has(&[], "lattice") && has(&["--set", "dim=3"], "lattice"));
+    assert!(!has(&[], "magic") && has(&["--set", "collision=trt"], "magic"));
+}
+
+#[test]
 fn who_stops_listening_loses_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_finegrain"))

@@ -306,6 +306,9 @@ enum Tracing {
     Off,
 }
 
+/// A run, and where its model keeps what.
+type Started<T, P> = (Run<Cells<P>>, Fields<T, P>);
+
 /// A run that is ready for its first step, and to end when it is warm; traced, it remembers as many
 /// parts as there are particles, which is more than a turn's: a sub-domain has 256 particles.
 fn start_run<T: Real, P: Real>(
@@ -313,7 +316,7 @@ fn start_run<T: Real, P: Real>(
     width: f64,
     workers: usize,
     tracing: Tracing,
-) -> Result<(Run<Cells<P>>, Fields<T, P>), SceneError> {
+) -> Result<Started<T, P>, SceneError> {
     let sph = model::<T, P>(width, plan)?;
     let trace = if tracing == Tracing::On { sph.model.columns.points() } else { 0 };
     let settings = Settings { schedule: plan.schedule, workers, trace, ..Settings::default() };

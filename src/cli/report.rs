@@ -38,7 +38,8 @@ pub struct StabilityArguments {
     /// Begin no run after so many minutes.
     #[arg(long, default_value_t = 60.0)]
     budget: f64,
-    /// Number of worker threads; all cores by default, but one at most for every 4,000 points.
+    /// Number of worker threads; all cores by default, but at most one for every 4,000 points (500
+    /// particles of SPH).
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     /// Folder for the table, the page and the picture; a map that is there already is gone on with
@@ -58,7 +59,8 @@ pub struct SpeedVsErrorArguments {
     /// Begin no run that would end after so many minutes; the cheapest are run first.
     #[arg(long, default_value_t = 30.0)]
     budget: f64,
-    /// Number of worker threads; all cores by default, but one at most for every 4,000 points.
+    /// Number of worker threads; all cores by default, but at most one for every 4,000 points (500
+    /// particles of SPH).
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     /// Folder for the page, the table and the pictures.

@@ -1,5 +1,6 @@
 //! `finegrain run`.
 
+use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
@@ -10,7 +11,7 @@ use finegrain::bench::{memory, workers};
 use finegrain::framework::Schedule;
 use finegrain::framework::port::Port;
 use finegrain::framework::run::Progress;
-use finegrain::scene::{Orders, Parameters, Precision, Report, Scene, SceneError};
+use finegrain::scene::{Orders, Parameters, Precision, Report, Scene, SceneError, Value};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -30,8 +31,8 @@ pub struct RunArguments {
     /// Numerical method; the scene's first by default.
     #[arg(long)]
     method: Option<String>,
-    /// Number of worker threads; all cores by default, but one at most for every 4,000 points. The bits do not
-    /// depend on it.
+    /// Number of worker threads; all cores by default, but at most one for every 4,000 points (500 particles
+    /// of SPH). The bits do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     workers: Option<u16>,
     /// How workers meet: serial, lockstep, peer-to-peer, fork-join or fixed.
@@ -107,7 +108,8 @@ fn duration(text: &str) -> Result<Duration, String> {
 struct Line<'a> {
     scene: &'a str,
     method: &'a str,
-    parameters: &'a Parameters,
+    /// Those that have an effect.
+    parameters: BTreeMap<&'static str, &'a Value>,
     precision: Precision,
     schedule: &'a str,
     workers: usize,
@@ -121,8 +123,8 @@ struct Line<'a> {
     points: usize,
     point_steps_per_s: f64,
     state_hash: String,
-    results: &'a std::collections::BTreeMap<&'static str, f64>,
-    errors: &'a std::collections::BTreeMap<&'static str, f64>,
+    results: &'a BTreeMap<&'static str, f64>,
+    errors: &'a BTreeMap<&'static str, f64>,
     notes: &'a [String],
     files: &'a [PathBuf],
 }
@@ -240,7 +242,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         checkpoint_requests: Some(requests.checkpoints),
     };
     let points = prepared.points();
-    let workers = orders.settings(points).workers;
+    let workers = prepared.workers(&orders);
     let counted = workers::counted(workers);
     eprintln!("{}: {points} points, {}, {counted}", scene.name, arguments.schedule);
     let outcome = prepared.run(orders);
@@ -266,7 +268,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         let line = Line {
             scene: scene.name,
             method,
-            parameters: &parameters,
+            parameters: parameters.effective(&(scene.method(Some(method))?.parameters)()),
             precision,
             schedule: arguments.schedule.name(),
             workers,

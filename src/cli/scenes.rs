@@ -22,7 +22,7 @@ pub fn scenes(arguments: &ScenesArguments, out: &mut impl Write) -> Result<(), C
     match &arguments.scene {
         Some(name) => {
             let scene = Scene::find(name)?;
-            let methods = match &arguments.method {
+            let methods = match arguments.method.as_deref() {
                 Some(name) => std::slice::from_ref(scene.method(Some(name))?),
                 None => scene.methods,
             };
@@ -43,10 +43,16 @@ fn describe(scene: &Scene, methods: &[Method], out: &mut impl Write) -> std::io:
     writeln!(out, "{}: {}", scene.name, scene.summary)?;
     for method in methods {
         writeln!(out, "\n--method {}", method.name)?;
-        for parameter in (method.parameters)() {
+        let parameters = (method.parameters)();
+        for parameter in &parameters {
             let (name, default) = (parameter.name, parameter.default().to_string());
             writeln!(out, "  {name:20} {default:>18}  {}", parameter.help)?;
-            writeln!(out, "  {:39}  ({})", "", parameter.range())?;
+            let condition = parameter
+                .only_with
+                .filter(|(other, _)| parameters.iter().any(|parameter| parameter.name == *other))
+                .map(|(other, values)| format!("; only with {other} = {}", values.join(" or ")));
+            let condition = condition.unwrap_or_default();
+            writeln!(out, "  {:39}  ({}{condition})", "", parameter.range())?;
         }
     }
     Ok(())

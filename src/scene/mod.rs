@@ -76,8 +76,7 @@ impl Precision {
 pub struct Orders {
     /// How workers meet.
     pub schedule: Schedule,
-    /// Number of workers; if `None` as many as there are cores, but one at most for every
-    /// [`POINTS_PER_WORKER`] points.
+    /// Number of workers; if `None`, see [`Prepared::workers`].
     pub workers: Option<usize>,
     /// End after so many steps.
     pub steps: Option<u64>,
@@ -106,23 +105,15 @@ pub struct Orders {
 /// The last parts of each worker that a trace shows.
 const TRACED: usize = 200_000;
 
-/// Fewest points that are worth a worker: with fewer, what workers wait for each other in every step takes longer than
-/// what they save. Measured with lattice Boltzmann, of which two workers are faster than one from some 8,000 points on.
-pub const POINTS_PER_WORKER: usize = 4000;
-
 impl Orders {
-    /// Settings of a simulation of so many points for these orders.
-    pub fn settings(&self, points: usize) -> Settings {
-        let trace = if self.trace.is_some() { TRACED } else { 0 };
-        let settings = Settings { schedule: self.schedule, trace, ..Settings::default() };
-        let worth = (points / POINTS_PER_WORKER).clamp(1, settings.workers.max(1));
-        Settings { workers: self.workers.unwrap_or(worth), ..settings }
-    }
-
     /// A simulation of `model` for these orders.
-    fn simulation<D: Domain>(&self, model: Model<D>) -> Result<Simulation<D>, SceneError> {
-        let settings = self.settings(model.columns.points());
-        let workers = settings.workers;
+    fn simulation<D: Domain>(
+        &self,
+        model: Model<D>,
+        workers: usize,
+    ) -> Result<Simulation<D>, SceneError> {
+        let trace = if self.trace.is_some() { TRACED } else { 0 };
+        let settings = Settings { schedule: self.schedule, workers, trace, ..Settings::default() };
         Simulation::new(model, settings).map_err(|cause| SceneError::Workers { workers, cause })
     }
 
@@ -163,6 +154,16 @@ impl Orders {
 pub trait Prepared {
     /// Number of points.
     fn points(&self) -> usize;
+
+    /// Fewest points that are worth a worker: with fewer, what workers wait for each other in every step takes longer
+    /// than what they save.
+    fn points_per_worker(&self) -> usize;
+
+    /// Number of workers that it runs with: what is ordered, or all cores, as far as there are points enough.
+    fn workers(&self, orders: &Orders) -> usize {
+        let worth = (self.points() / self.points_per_worker()).max(1);
+        orders.workers.unwrap_or_else(|| worth.min(Settings::default().workers))
+    }
 
     /// Runs it to the end.
     ///

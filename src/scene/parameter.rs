@@ -43,6 +43,8 @@ pub struct Parameter {
     pub unit: &'static str,
     /// What it means.
     pub help: &'static str,
+    /// Another parameter and the values of that with which alone this one has an effect.
+    pub only_with: Option<(&'static str, &'static [&'static str])>,
 }
 
 /// A parameter's value.
@@ -93,7 +95,7 @@ impl Parameter {
         unit: &'static str,
         help: &'static str,
     ) -> Self {
-        Self { name, kind: Kind::Number { default, least, most }, unit, help }
+        Self { name, kind: Kind::Number { default, least, most }, unit, help, only_with: None }
     }
 
     /// A whole number with default and range.
@@ -103,7 +105,7 @@ impl Parameter {
         [least, most]: [u32; 2],
         help: &'static str,
     ) -> Self {
-        Self { name, kind: Kind::Integer { default, least, most }, unit: "", help }
+        Self { name, kind: Kind::Integer { default, least, most }, unit: "", help, only_with: None }
     }
 
     /// A choice among names, the first being the default.
@@ -112,7 +114,15 @@ impl Parameter {
         choices: &'static [&'static str],
         help: &'static str,
     ) -> Self {
-        Self { name, kind: Kind::Choice { default: choices[0], names: choices }, unit: "", help }
+        let kind = Kind::Choice { default: choices[0], names: choices };
+        Self { name, kind, unit: "", help, only_with: None }
+    }
+
+    /// The same, but without effect where another parameter of the scene has none of these values.
+    #[must_use]
+    pub const fn only_with(mut self, other: &'static str, values: &'static [&'static str]) -> Self {
+        self.only_with = Some((other, values));
+        self
     }
 
     /// The same with another default number.
@@ -246,6 +256,20 @@ impl Parameters {
             Some(Value::Choice(text)) => text,
             other => panic!("parameter {name:?} is {other:?}, not a choice"),
         }
+    }
+
+    /// Those of the `declared` that have an effect with these values.
+    pub fn effective(&self, declared: &[Parameter]) -> BTreeMap<&'static str, &Value> {
+        let has_effect = |parameter: &&Parameter| {
+            parameter.only_with.is_none_or(|(other, values)| {
+                let value = self.0.get(other).map(Value::to_string);
+                value.is_none_or(|value| values.contains(&value.as_str()))
+            })
+        };
+        let effective = declared.iter().filter(has_effect);
+        effective
+            .filter_map(|parameter| Some((parameter.name, self.0.get(parameter.name)?)))
+            .collect()
     }
 
     /// Names and values, by name.

@@ -18,6 +18,7 @@ pub const ORDER: Parameter = Parameter {
     kind: Kind::Choice { default: "4", names: &["2", "4"] },
     unit: "",
     help: "of the operators: Harlow & Welch (1965), Morinishi et al. (1998)",
+    only_with: None,
 };
 
 /// A fluid without forces between walls at rest, if there are any, for the parameters of time steps and, in periodic

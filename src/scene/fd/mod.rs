@@ -64,6 +64,7 @@ const ORDER: Parameter = Parameter {
     kind: Kind::Choice { default: "4", names: &["2", "4", "6", "8"] },
     unit: "",
     help: "of the Laplacian; 8 in periodic boxes only",
+    only_with: None,
 };
 
 /// Of equations of first order in time.
@@ -157,14 +158,20 @@ impl<T: Compiled> Prepared for FdScene<T> {
         self.fd.parts.mesh.points()
     }
 
+    /// As with lattice Boltzmann, whose points take about as long.
+    fn points_per_worker(&self) -> usize {
+        4000
+    }
+
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
+        let workers = self.workers(&orders);
         let Self { fd: Fd { model, parts }, flow, description } = *self;
         let names: Vec<_> = parts
             .unknowns
             .iter()
             .map(|&u| model.columns.column(finegrain_framework::Handle::id(u)).name().to_owned())
             .collect();
-        let (simulation, trace) = (orders.simulation(model)?, orders.trace.clone());
+        let (simulation, trace) = (orders.simulation(model, workers)?, orders.trace.clone());
         let run = flow.observe(Run::new(simulation).scene(description), &parts);
         let mut run = orders
             .plan(run, flow.end_time(), |every| flow.show(Dump::new("fields", every), &names));

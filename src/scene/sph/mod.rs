@@ -146,8 +146,9 @@ const PARAMETERS: [Parameter; 6] = [
         0.5,
         [0.0, 10.0],
         "",
-        "diffusivity of the pressure in units of h c / 8, with edac",
-    ),
+        "diffusivity of the pressure in units of h c / 8",
+    )
+    .only_with("pressure", &["edac"]),
     Parameter::number(
         "transport",
         0.0,
@@ -208,8 +209,9 @@ const WALL_PARAMETERS: [Parameter; 3] = [
         3.0,
         [1.0, 100.0],
         "",
-        "largest extrapolation of the velocity into bodies, with a linear profile",
-    ),
+        "largest extrapolation of the velocity into bodies",
+    )
+    .only_with("wall_velocity", &["linear"]),
 ];
 
 /// Choices of flows around and between bodies: particles kept even by a transport velocity, pressure by
@@ -320,11 +322,17 @@ impl<T: Real, P: Real> Prepared for SphScene<T, P> {
         self.sph.model.columns.points()
     }
 
+    /// Two sub-domains: a particle takes some thirty times as long as a site of a lattice.
+    fn points_per_worker(&self) -> usize {
+        500
+    }
+
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
+        let workers = self.workers(&orders);
         let Self { sph, flow, description } = *self;
         let Sph { model, fields, particle_mass } = sph;
         let points = model.columns.points();
-        let (simulation, trace) = (orders.simulation(model)?, orders.trace.clone());
+        let (simulation, trace) = (orders.simulation(model, workers)?, orders.trace.clone());
         let run = flow.observe(Run::new(simulation).scene(description), &fields, particle_mass);
         let mut run = orders.plan(run, flow.end_time(), |every| {
             let dims = fields.velocity.len();
