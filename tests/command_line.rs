@@ -84,6 +84,13 @@ fn a_trace_shows_every_part_of_every_worker() {
     assert!(of_step(0) > 4 && (1..4).all(|step| of_step(step) == of_step(0)));
     let plain = json(&finegrain(&small(&["--steps", "4", "--json"]), folder.path()));
     assert_eq!(line["state_hash"], plain["state_hash"]);
+    // A run that fails leaves what stood there, and the checkpoint it should restart from is no place for a trace.
+    std::fs::write(folder.path().join("a"), "precious").unwrap();
+    for trace in ["trace.json", "a"] {
+        complaint(&small(&["--restart", "a", "--trace", trace]), folder.path());
+    }
+    assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "precious");
+    assert_eq!(std::fs::read_to_string(folder.path().join("trace.json")).unwrap(), text);
     let nowhere = small(&["--steps", "1", "--trace", "no/such/folder/t.json"]);
     assert!(
         complaint(&nowhere, folder.path()).contains("cannot write trace `no/such/folder/t.json`")

@@ -123,7 +123,7 @@ pub struct Column {
     role: Role,
     kind: ElementKind,
     kept: bool,
-    limit: Option<Limit>,
+    limit: Option<&'static Limit>,
     lines: Memory,
 }
 
@@ -153,7 +153,7 @@ impl Column {
     }
 
     /// How far its values may be from zero; `None` if all that are finite are valid.
-    pub fn limit(&self) -> Option<Limit> {
+    pub fn limit(&self) -> Option<&'static Limit> {
         self.limit
     }
 
@@ -258,7 +258,7 @@ impl Columns {
     /// not finite, and wherever those are looked for
     /// ([`Settings::check_every`](crate::Settings::check_every)). What has lost all sense may take hundreds of
     /// steps more to grow out of the range of floats.
-    pub fn limit<T: Element>(&mut self, column: State<T>, limit: Limit) {
+    pub fn limit<T: Element>(&mut self, column: State<T>, limit: &'static Limit) {
         self.columns[column.id().0 as usize].limit = Some(limit);
     }
 

@@ -40,7 +40,7 @@ pub enum Cause {
         /// Name of the column.
         column: String,
         /// Its limit.
-        limit: Limit,
+        limit: &'static Limit,
     },
 }
 

@@ -158,7 +158,11 @@ fn values_that_are_not_finite() {
 /// What has lost all sense is found long before it is infinite: wherever it is, in a leg and between steps.
 #[test]
 fn values_beyond_their_limit() {
-    fn outcomes<T: Real>(value: f64, place: usize, limit: Limit) -> [Result<(), RunError>; 2] {
+    fn outcomes<T: Real>(
+        value: f64,
+        place: usize,
+        limit: &'static Limit,
+    ) -> [Result<(), RunError>; 2] {
         let domain = Grid::builder([72]).tile(1, 1).build();
         let mut columns = Columns::new(domain.points());
         let level = columns.state::<T>("level");
@@ -171,7 +175,7 @@ fn values_beyond_their_limit() {
         let mut simulation = Simulation::new(model, settings).unwrap();
         [simulation.check_finite(), simulation.advance(1)]
     }
-    let limit = Limit { most: 2.0, beyond: "the level is too high" };
+    let limit = &Limit { most: 2.0, beyond: "the level is too high" };
     let cause = Cause::Beyond { column: "level".to_owned(), limit };
     for place in 0..72 {
         for (value, is_valid) in

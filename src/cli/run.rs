@@ -9,6 +9,7 @@ use std::time::Duration;
 use clap::Args;
 use finegrain::bench::{memory, workers};
 use finegrain::framework::Schedule;
+use finegrain::framework::format::AtomicFile;
 use finegrain::framework::port::Port;
 use finegrain::framework::run::Progress;
 use finegrain::scene::{Orders, Parameters, Precision, Report, Scene, SceneError, Value};

@@ -6,7 +6,7 @@ use crate::lattice::LatticeKind;
 use crate::physics::Streaming;
 
 /// What all sites' populations add up to is about 1.
-const UNSTABLE: Limit = Limit {
+static UNSTABLE: Limit = Limit {
     most: 1.0,
     beyond: "the flow is unstable; choose another collision, more points or more viscosity",
 };
@@ -40,7 +40,7 @@ impl<T: Real> Fields<T> {
             Streaming::InPlace => ("in_place", 0..0),
         };
         let populations: Vec<_> = all.map(|q| columns.state(&format!("{name}_{q}"))).collect();
-        populations.iter().for_each(|&population| columns.limit(population, UNSTABLE));
+        populations.iter().for_each(|&population| columns.limit(population, &UNSTABLE));
         Self {
             populations,
             next: next.map(|q| columns.rate(&format!("next_{q}"))).collect(),
