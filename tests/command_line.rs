@@ -174,6 +174,22 @@ fn a_flow_that_no_mesh_here_resolves_is_said_to_be_none() {
     assert!(notes("reynolds=260").contains("grid Reynolds number"));
 }
 
+/// BGK on a mesh too coarse: populations grow for hundreds of steps before they are infinite.
+#[test]
+fn a_flow_that_has_lost_all_sense_ends_the_run_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = ["resolution=32", "collision=bgk", "reynolds=5000"];
+    let mut orders = vec!["run", "cavity", "--method", "lbm", "--until", "20", "--out", "out"];
+    settings.iter().for_each(|setting| orders.extend(["--set", setting]));
+    let said = complaint(&orders, folder.path());
+    assert!(said.contains("the flow is unstable; choose another collision"), "{said}");
+    let history = std::fs::read_to_string(folder.path().join("out/flow.csv")).unwrap();
+    let energies = history.lines().skip(1).map(|row| row.split(',').nth(2).unwrap());
+    let most = energies.map(|energy| energy.parse().unwrap()).fold(0.0, f64::max);
+    // Of a fluid that all moves as fast as the lid, 0.5; without the limit, 1e126.
+    assert!(most < 1e3, "kinetic energy {most}");
+}
+
 #[test]
 fn workers_and_schedules_do_not_change_the_hash() {
     let folder = tempfile::tempdir().unwrap();

@@ -38,8 +38,8 @@ pub struct StabilityArguments {
     /// Begin no run after so many minutes.
     #[arg(long, default_value_t = 60.0)]
     budget: f64,
-    /// Number of worker threads; all cores by default, but at most one for every 4,000 points (500
-    /// particles of SPH).
+    /// Number of worker threads; all cores by default, but at most one for every 500 particles of SPH, 4,000
+    /// sites of lattice Boltzmann or 8,000 points of finite differences.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     /// Folder for the table, the page and the picture; a map that is there already is gone on with
@@ -59,8 +59,8 @@ pub struct SpeedVsErrorArguments {
     /// Begin no run that would end after so many minutes; the cheapest are run first.
     #[arg(long, default_value_t = 30.0)]
     budget: f64,
-    /// Number of worker threads; all cores by default, but at most one for every 4,000 points (500
-    /// particles of SPH).
+    /// Number of worker threads; all cores by default, but at most one for every 500 particles of SPH, 4,000
+    /// sites of lattice Boltzmann or 8,000 points of finite differences.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     /// Folder for the page, the table and the pictures.

@@ -32,8 +32,8 @@ pub struct RunArguments {
     /// Numerical method; the scene's first by default.
     #[arg(long)]
     method: Option<String>,
-    /// Number of worker threads; all cores by default, but at most one for every 4,000 points (500 particles
-    /// of SPH). The bits do not depend on it.
+    /// Number of worker threads; all cores by default, but at most one for every 500 particles of SPH, 4,000 sites
+    /// of lattice Boltzmann or 8,000 points of finite differences. The bits do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     workers: Option<u16>,
     /// How workers meet: serial, lockstep, peer-to-peer, fork-join or fixed.
