@@ -301,6 +301,9 @@ fn bad_arguments_are_named_with_what_would_be_right() {
     says(&["run", "cylinder", "--method", "fd", "--set", "dim=3"], &["it must be 2 only"]);
     let implicit = ["run", "heat", "--set", "courant=2"];
     says(&implicit, &["courant = 2", "at most 1 with integrator = rk4"]);
+    // 4000^3 points, each with a value and its rate.
+    let large = ["run", "heat", "--set", "dim=3", "--set", "resolution=4000"];
+    says(&large, &["--method fd", "64000000000 points", "1024.0 GB", "choose fewer"]);
     says(&["run", "."], &["`.` is no scene file", ".toml"]);
     says(&small(&["--workers", "0"]), &["workers", "0"]);
     says(&small(&["--steps", "-3"]), &["-3", "at least 0"]);

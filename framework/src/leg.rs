@@ -130,6 +130,7 @@ impl<'a, D: Domain> Leg<'a, D> {
             domain: self.domain,
             partition: self.partition,
             id,
+            columns: self.columns,
             slots: self.desk.slots(swapped),
             shifts,
             displaced: self.step.displaced,

@@ -114,6 +114,7 @@ pub use columns::*;
 pub use domain::*;
 pub use failure::{Cause, Failure};
 pub use integrator::{Evolution, Integrator, Plan};
+pub use memory::{NoMemory, check_memory};
 pub use notes::{Note, Notes};
 pub use real::Real;
 pub use schedule::{HandOut, Schedule};

@@ -37,6 +37,25 @@ pub(crate) struct Memory {
     length: usize,
 }
 
+/// The system has no memory for so many bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("this takes at least {:.1} GB of memory, which the system does not have", *bytes as f64 / 1e9)]
+pub struct NoMemory {
+    /// How many.
+    pub bytes: usize,
+}
+
+/// Asks the system whether it has memory for `elements` of `size` bytes in all, before columns are declared that fill
+/// it. That it has does not say that nobody else takes it meanwhile.
+///
+/// # Errors
+/// If it has not.
+pub fn check_memory(elements: usize, size: usize) -> Result<(), NoMemory> {
+    let bytes = elements.saturating_mul(size);
+    // A map of the whole is what systems refuse, where they would give its parts until all is taken.
+    MmapMut::map_anon(bytes.max(1)).map(drop).map_err(|_| NoMemory { bytes })
+}
+
 impl Memory {
     /// `length` lines for column number `number`.
     ///
@@ -122,6 +141,17 @@ mod tests {
         memory.resize(1 << 17);
         assert_eq!(memory.len(), 1 << 17);
         assert!(memory.capacity() >= 1 << 17);
+    }
+
+    #[test]
+    fn more_memory_than_there_is_is_refused() {
+        assert_eq!(check_memory(1000, 8), Ok(()));
+        for (elements, size) in [(1 << 46, 8), (usize::MAX, 8)] {
+            let refused = check_memory(elements, size).unwrap_err();
+            assert_eq!(refused.bytes, elements.saturating_mul(size));
+        }
+        let said = NoMemory { bytes: 512_000_000_000 }.to_string();
+        assert_eq!(said, "this takes at least 512.0 GB of memory, which the system does not have");
     }
 
     /// Columns that nobody looks at take no memory.

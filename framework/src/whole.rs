@@ -71,12 +71,21 @@ impl<D: Domain> Whole<'_, D> {
         slots_of(self.columns, slots);
         values.clear();
         values.resize(partition.len() * each, 0.0);
-        let (domain, slots) = (&*self.domain, &**slots);
+        let (domain, columns, slots) = (&*self.domain, &*self.columns, &**slots);
         self.team.for_each_chunk(values, each, |id, values| {
             let (shifts, displaced) = (Shifts::NONE, ColumnSet::default());
             let (notebook, activity) = (Notebook::EMPTY, &UNWATCHED);
-            let place =
-                Place { domain, partition, id, slots, shifts, displaced, notebook, activity };
+            let place = Place {
+                domain,
+                partition,
+                id,
+                columns,
+                slots,
+                shifts,
+                displaced,
+                notebook,
+                activity,
+            };
             // SAFETY: the partition is sealed and has as many points as the columns, which are
             // borrowed exclusively here; nobody writes any of them during the reduction.
             let near = unsafe { Near::new(place, ColumnSet::default()) };

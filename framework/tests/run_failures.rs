@@ -262,3 +262,28 @@ fn plans_that_make_no_sense() {
     }
     assert_eq!(fs::read_dir(out).unwrap().count(), 0);
 }
+
+/// Locks of folders are the system's: elsewhere two runs into one folder are the user's affair.
+#[test]
+#[cfg(unix)]
+fn two_runs_into_one_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_path_buf();
+    let another = move || plan(&HEAT, settings(1), &path).until(TEN_STEPS).run();
+    let meanwhile = another.clone();
+    let mut run = plan(&HEAT, settings(1), folder.path()).until(TEN_STEPS).monitor(
+        "refused",
+        Every::Steps(5),
+        ["refused"],
+        move |_| {
+            let failed = meanwhile().err().map(|failed| failed.cause);
+            [f64::from(matches!(failed, Some(RunFailure::Output(OutputError::InUse { .. }))))]
+        },
+    );
+    let summary = run.run().unwrap();
+    let refused: Vec<f64> = summary.histories[1].column("refused").unwrap().collect();
+    assert_eq!(refused, [1.0; 3]);
+    let written = files(folder.path());
+    another().unwrap();
+    assert_eq!(written["heat.csv"], files(folder.path())["heat.csv"]);
+}

@@ -167,7 +167,10 @@ fn writing_what_the_stage_does_not_list() {
     let outcome = in_rate(|f, _, rates| {
         rates.column(f.unlisted);
     });
-    assert_refused(outcome, "not listed in the stage's `writes`");
+    assert_refused(
+        outcome,
+        "column \"unlisted\" is written but not listed in the stage's `writes`",
+    );
 }
 
 #[test]

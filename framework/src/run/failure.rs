@@ -168,6 +168,15 @@ pub enum OutputError {
         /// What the system says.
         source: io::Error,
     },
+    /// Another run has not ended yet.
+    #[error(
+        "another run is writing to the folder `{}`: wait until it has ended, or give this one another",
+        folder.display()
+    )]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// A file for viewing.
     #[error(transparent)]
     Format(#[from] FormatError),

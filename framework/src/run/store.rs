@@ -1,6 +1,6 @@
 //! What the writer thread owns: the files of a run.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -42,6 +42,8 @@ pub(super) struct Store {
     checkpoints: Vec<u64>,
     last_checkpoint: Option<PathBuf>,
     files: Vec<PathBuf>,
+    /// Held until the run has ended.
+    _lock: Option<File>,
 }
 
 /// A history and its file.
@@ -64,6 +66,7 @@ impl Store {
     ) -> Result<Self, OutputError> {
         let folder = &layout.folder;
         fs::create_dir_all(folder).map_err(refused("make folder", folder))?;
+        let lock = lock(folder)?;
         remove_abandoned(folder);
         let logs: Vec<Log> = histories
             .into_iter()
@@ -81,7 +84,15 @@ impl Store {
         }
         let mut checkpoints = record.checkpoints.clone();
         checkpoints.retain(|&step| folder.join(checkpoint_file(step)).exists());
-        Ok(Self { layout, series: all_series, logs, checkpoints, last_checkpoint: None, files })
+        Ok(Self {
+            layout,
+            series: all_series,
+            logs,
+            checkpoints,
+            last_checkpoint: None,
+            files,
+            _lock: lock,
+        })
     }
 
     /// Appends a row to a history: all of it or, if the disk is full, nothing.
@@ -193,6 +204,16 @@ impl Log {
             })
             .map_err(refused("write", &path))?;
         Ok(Self { history, path, file, length: text.len() as u64, line: String::new() })
+    }
+}
+
+/// Keeps other runs out of a folder, where the system can lock one; `None` where it cannot.
+fn lock(folder: &Path) -> Result<Option<File>, OutputError> {
+    let Ok(handle) = File::open(folder) else { return Ok(None) };
+    match handle.try_lock() {
+        Ok(()) => Ok(Some(handle)),
+        Err(TryLockError::WouldBlock) => Err(OutputError::InUse { folder: folder.to_path_buf() }),
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 

@@ -61,6 +61,8 @@ pub(crate) struct Place<'a, D> {
     pub domain: &'a D,
     pub partition: &'a Partition,
     pub id: usize,
+    /// The columns' declarations.
+    pub columns: &'a Columns,
     pub slots: &'a [Slot],
     /// What is owned with an offset, and by which shift of the partition.
     pub shifts: &'a Shifts,
@@ -88,11 +90,19 @@ impl<'a, D> Place<'a, D> {
         }
     }
 
+    /// Name of a column, for messages.
+    fn name(&self, id: ColumnId) -> &'a str {
+        self.columns
+            .iter()
+            .nth(id.0 as usize)
+            .map_or("of other columns", |(_, column)| column.name())
+    }
+
     fn base<T: Element>(&self, id: ColumnId) -> *mut T {
         let slot = self.slots.get(id.0 as usize).filter(|slot| slot.kind == T::KIND);
         match slot {
             Some(slot) => slot.address.cast(),
-            None => panic!("column handle {} belongs to other columns", id.0),
+            None => panic!("the handle of column number {} belongs to other columns", id.0),
         }
     }
 }

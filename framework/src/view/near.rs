@@ -127,13 +127,13 @@ impl<'a, D: Domain> Near<'a, D> {
     fn view<H: Handle>(&self, column: H) -> View<'a, H::Element> {
         assert!(
             !self.writes.contains(column.id()),
-            "column {} is written by the stage that reads it from neighbours",
-            column.id().0
+            "column {:?} is written by the stage that reads it from neighbours",
+            self.place.name(column.id())
         );
         assert!(
             !self.place.displaced.contains(column.id()),
-            "column {} is owned with an offset in this step and so not seen by neighbours",
-            column.id().0
+            "column {:?} is owned with an offset in this step and so not seen by neighbours",
+            self.place.name(column.id())
         );
         let Place { partition, id, .. } = self.place;
         View { base: self.place.base(column.id()), partition, id, near: PhantomData }

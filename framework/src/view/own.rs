@@ -17,16 +17,20 @@ struct Borrows {
 }
 
 impl Borrows {
-    fn share(&mut self, id: ColumnId) {
-        assert!(!self.exclusive.contains(id), "column {} is already borrowed for writing", id.0);
+    fn share<D>(&mut self, id: ColumnId, place: &Place<'_, D>) {
+        assert!(
+            !self.exclusive.contains(id),
+            "column {:?} is already borrowed for writing",
+            place.name(id)
+        );
         self.shared.insert(id);
     }
 
-    fn claim(&mut self, id: ColumnId) {
+    fn claim<D>(&mut self, id: ColumnId, place: &Place<'_, D>) {
         assert!(
             !self.shared.contains(id) && self.exclusive.insert(id),
-            "column {} is already borrowed: a column is had once per call, before any loop",
-            id.0
+            "column {:?} is already borrowed: a column is had once per call, before any loop",
+            place.name(id)
         );
     }
 }
@@ -64,10 +68,10 @@ impl<'a, D: Domain> Rates<'a, D> {
     pub fn column<T: Element>(&mut self, column: Rate<T>) -> PartMut<'a, T> {
         assert!(
             self.writes.contains(column.id()),
-            "column {} is written but not listed in the stage's `writes`",
-            column.id().0
+            "column {:?} is written but not listed in the stage's `writes`",
+            self.place.name(column.id())
         );
-        self.borrows.claim(column.id());
+        self.borrows.claim(column.id(), &self.place);
         let spans = self.place.spans(column.id());
         // SAFETY: the spans are the sub-domain's own; `Rates::new` promises that nobody else touches
         // the column there, and `claim` that it is had only once.
@@ -162,7 +166,7 @@ impl<'a, D: Domain> Own<'a, D> {
 
     /// Own part of any column, read only; panics as [`Own::state`].
     pub(crate) fn part<T: Element>(&mut self, id: ColumnId) -> Part<'a, T> {
-        self.borrows.share(id);
+        self.borrows.share(id, &self.place);
         // SAFETY: the spans are the sub-domain's own; `Own::new` promises that nobody else touches
         // them, and `share` that the column is not borrowed for writing.
         unsafe { Part::new(self.place.base(id), self.place.spans(id)) }
@@ -170,7 +174,7 @@ impl<'a, D: Domain> Own<'a, D> {
 
     /// Own part of any column, to be written; panics as [`Own::state_mut`].
     pub(crate) fn part_mut<T: Element>(&mut self, id: ColumnId) -> PartMut<'a, T> {
-        self.borrows.claim(id);
+        self.borrows.claim(id, &self.place);
         // SAFETY: as in `part`, with `claim` for the only borrow of the column.
         unsafe { PartMut::new(self.place.base(id), self.place.spans(id)) }
     }
@@ -196,7 +200,8 @@ impl<'a, D: Domain> Own<'a, D> {
             id: ColumnId,
             most: f64,
         ) -> bool {
-            assert!(!own.borrows.exclusive.contains(id), "column {} is being written", id.0);
+            let is_written = own.borrows.exclusive.contains(id);
+            assert!(!is_written, "column {:?} is being written", own.place.name(id));
             // SAFETY: as in `Own::part`; what is read here does not outlive this borrow of `own`.
             let part = unsafe { Part::new(own.place.base::<T>(id), own.place.spans(id)) };
             let most = T::from(most).map_or(T::max_value(), |most| most.min(T::max_value()));

@@ -1,5 +1,7 @@
 //! Why a model cannot be built.
 
+use finegrain_framework::NoMemory;
+
 use crate::operator::Order;
 
 /// Why a model could not be built.
@@ -121,6 +123,15 @@ pub enum FdError {
         number: usize,
         /// Where, m.
         position: [f64; 3],
+    },
+    /// There are more points than the system has memory for.
+    #[error("{points} points: {cause}; choose fewer")]
+    Memory {
+        /// How many.
+        points: usize,
+        /// What they take.
+        #[source]
+        cause: NoMemory,
     },
     /// The state at the beginning is not a number somewhere.
     #[error("the initial {field} at {position:?} m is {value}; it must be {range}")]

@@ -1,5 +1,6 @@
 //! Where the points are.
 
+use finegrain_framework::check_memory;
 use serde::{Deserialize, Serialize};
 
 use crate::error::FdError;
@@ -113,6 +114,13 @@ impl Mesh {
     pub fn positions(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         let [nx, ny, _] = self.shape();
         (0..self.points()).map(move |i| self.position([i % nx, i / nx % ny, i / (nx * ny)]))
+    }
+
+    /// Refuses a mesh with more points than there is memory for `fields` columns of `T`.
+    pub(crate) fn check_memory<T>(&self, fields: usize) -> Result<(), FdError> {
+        let points = self.points();
+        let checked = check_memory(points, fields * size_of::<T>());
+        checked.map_err(|cause| FdError::Memory { points, cause })
     }
 
     pub(crate) fn is_periodic(&self) -> [bool; 3] {

@@ -87,6 +87,7 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
                 }
             }
         }
+        mesh.check_memory::<T>(2 * F + G)?;
         let mut domain = Grid::builder(mesh.shape())
             .periodic(mesh.is_periodic())
             .reach(reach)

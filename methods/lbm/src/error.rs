@@ -1,5 +1,6 @@
 //! Why a model cannot be built.
 
+use finegrain_framework::NoMemory;
 use finegrain_framework::shape::ShapeError;
 
 /// Why a model could not be built.
@@ -14,6 +15,15 @@ pub enum LbmError {
         value: f64,
         /// What it may be.
         range: &'static str,
+    },
+    /// There are more sites than the system has memory for.
+    #[error("{sites} sites: {cause}; choose fewer")]
+    Memory {
+        /// How many.
+        sites: usize,
+        /// What they take.
+        #[source]
+        cause: NoMemory,
     },
     /// The relaxation time is not one that the method can work with.
     #[error(

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 use finegrain_framework::space::Grid;
-use finegrain_framework::{Columns, Model, Plan, Real, RigidPace, Step};
+use finegrain_framework::{Columns, Model, Plan, Real, RigidPace, Step, check_memory};
 
 use crate::acceleration::Acceleration;
 use crate::collision::{Central, Collide, Collision, Cumulant, Mrt, Regularised, Trt};
@@ -173,6 +173,10 @@ impl Builder<'_> {
     ) -> Result<Lbm<T>, LbmError> {
         let &Self { mesh, fluid, physics, scheme, start } = self;
         let (streaming, velocities) = (scheme.streaming(physics)?, scheme.lattice.velocities());
+        let sites = mesh.sites();
+        let grids = if streaming == Streaming::TwoGrids { 2 } else { 1 };
+        check_memory(sites, grids * Q * size_of::<T>())
+            .map_err(|cause| LbmError::Memory { sites, cause })?;
         let domain = tiles::grid(mesh, scheme.lattice, streaming);
         let mut columns = Columns::new(domain.points());
         let fields = Fields::<T>::declare(&mut columns, scheme.lattice, streaming);

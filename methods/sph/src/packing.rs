@@ -1,5 +1,6 @@
 //! Packings: exactly periodic lattices to place particles on.
 
+use finegrain_framework::{NoMemory, check_memory};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use thiserror::Error;
@@ -44,7 +45,20 @@ pub enum PackingError {
     /// The box holds more than 2^32 particles.
     #[error("the box holds {0:e} particles, more than 2^32")]
     Count(f64),
+    /// The box holds more particles than the system has memory for.
+    #[error("the box holds {particles} particles: {cause}; choose fewer")]
+    Memory {
+        /// How many.
+        particles: usize,
+        /// What they take.
+        #[source]
+        cause: NoMemory,
+    },
 }
+
+/// What a particle takes at least, bytes: where it is put at the start, and its position, velocity and
+/// acceleration in three directions of 32 bits.
+const LEAST_BYTES: usize = 24 + 3 * 12;
 
 impl Packing {
     /// The dimension of the space that is packed.
@@ -92,7 +106,7 @@ impl Packing {
     ///
     /// # Errors
     /// [`PackingError`] if the spacing is not a length, a side cannot hold half a cell, or there
-    /// are more particles than 2^32.
+    /// are more particles than 2^32 or than the system has memory for.
     pub fn fit(self, wished: [f64; 3], spacing: f64) -> Result<Lattice, PackingError> {
         if !(spacing > 0.0 && spacing.is_finite()) {
             return Err(PackingError::Spacing(spacing));
@@ -111,7 +125,11 @@ impl Packing {
         if count > 2.0_f64.powi(32) {
             return Err(PackingError::Count(count));
         }
-        Ok(Lattice { packing: self, spacing, repeats: repeats.map(|n| n as usize) })
+        let lattice = Lattice { packing: self, spacing, repeats: repeats.map(|n| n as usize) };
+        let particles = lattice.count();
+        check_memory(particles, LEAST_BYTES)
+            .map_err(|cause| PackingError::Memory { particles, cause })?;
+        Ok(lattice)
     }
 }
 

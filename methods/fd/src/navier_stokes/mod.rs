@@ -91,6 +91,8 @@ impl NavierStokes {
     ) -> Result<Fd<T>, FdError> {
         self.time_step_limit(mesh, [0.0; 3])?;
         let dims = mesh.dims();
+        // Velocities and their rates, and the pressure; what is derived for those who look costs nothing until then.
+        mesh.check_memory::<T>(2 * dims + 1)?;
         let domain = Grid::builder(mesh.shape())
             .periodic(mesh.is_periodic())
             .reach(self.reach())
