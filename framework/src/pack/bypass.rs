@@ -92,10 +92,13 @@ impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
     /// If this is to be past the caches ([`Targets::is_past`]) nobody but this thread sees the rows, and nobody who
     /// could show them to another one, before it has called [`fence`].
     #[inline(always)]
-    pub(crate) unsafe fn new(to: [&'a mut [V]; N], bypass: Option<Bypass<'_>>) -> Self {
+    pub(crate) unsafe fn new(mut to: [&'a mut [V]; N], bypass: Option<Bypass<'_>>) -> Self {
         let mut is_past = bypass.is_some_and(|bypass| bypass.bytes == size_of::<V>());
-        for to in &to {
+        // All as long as the first, as the compiler sees: who writes as many checks no index.
+        let count = to[0].len();
+        for to in &mut to {
             is_past &= to.as_ptr().addr().is_multiple_of(size_of::<V>());
+            *to = &mut std::mem::take(to)[..count];
         }
         Self { to, is_past, thread: PhantomData }
     }
@@ -107,6 +110,12 @@ impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
 }
 
 impl<V: Pod, const N: usize> Targets<'_, V, N> {
+    /// Number of vectors in each row.
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        self.to[0].len()
+    }
+
     /// Writes vector `i` of every row.
     ///
     /// # Panics

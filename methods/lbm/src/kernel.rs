@@ -121,6 +121,10 @@ struct From<'a, V: Pack, P, const Q: usize> {
 impl<V: Pack, P: Pass<V, Q>, const Q: usize> Fill<V::Vector, Q> for From<'_, V, P, Q> {
     #[inline(always)]
     fn fill(mut self, to: &mut Targets<'_, V::Vector, Q>) {
+        // As many as are to be written, as the compiler sees: no index is checked then.
+        for from in &mut self.from {
+            *from = &from[..to.count()];
+        }
         self.task.over(&mut ApartPacks::<V, Q> { from: self.from, to });
     }
 }
@@ -133,7 +137,7 @@ struct ApartPacks<'a, 'b, V: Pack, const Q: usize> {
 impl<V: Pack, const Q: usize> Packs<V, Q> for ApartPacks<'_, '_, V, Q> {
     #[inline(always)]
     fn count(&self) -> usize {
-        self.from[0].len()
+        self.to.count()
     }
 
     #[inline(always)]

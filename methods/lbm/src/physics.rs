@@ -106,8 +106,9 @@ pub struct Scheme {
     pub wall: Wall,
     /// Where populations are kept; in place wherever that covers what is modelled if `None`.
     pub streaming: Option<Streaming>,
-    /// Smagorinsky's constant (1963) of eddies that the mesh does not hold, which have a viscosity of
-    /// `(C dx)^2 |S|`; none if `None`. Between 0.1 and 0.2 usually.
+    /// Smagorinsky's constant `C` (1963) of eddies that the mesh does not hold; none if `None`. With them the viscosity is
+    /// `sqrt(nu^2 + ((C dx)^2 |S|)^2)` (cf. Meyers & Sagaut 2006), so that they hardly count where `dx^2 |S| / nu` is far
+    /// below `1 / C^2`. 0.12 keeps flow in order that is too coarse for its Reynolds number (`docs/scenes.md`).
     pub smagorinsky: Option<f64>,
 }
 

@@ -20,7 +20,7 @@ const LENGTH: usize = 20;
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::WALL, super::RELAXATION_TIME];
-    [&channel::PARAMETERS[..], &super::collision_at_walls(), &own].concat()
+    [&channel::PARAMETERS[..], &super::slow_collision(), &own].concat()
 }
 
 prepare_with!(prepare_couette: build, Drive::Couette);

@@ -13,7 +13,7 @@ use finegrain_framework::{Simulation, VectorField};
 use finegrain_lbm::mesh::time_step_of_mach;
 use finegrain_lbm::model::Parts;
 use finegrain_lbm::{
-    Compiled, Condition, Fluid, LatticeKind, Mesh, Opening, Physics, Start, measure,
+    Collision, Compiled, Condition, Fluid, LatticeKind, Mesh, Opening, Physics, Start, measure,
 };
 
 use super::{Final, Flow, LbmScene};
@@ -34,7 +34,22 @@ pub fn parameters() -> Vec<Parameter> {
             "sound goes out (Poinsot & Lele 1992), or the pressure is fixed (Zou & He 1997)",
         ),
     ];
-    [&channel_cylinder::PARAMETERS[..], &super::collision_at_walls(), &own].concat()
+    [&channel_cylinder::PARAMETERS[..], &collision(), &own].concat()
+}
+
+/// Two relaxation times keep the cylinder where it is as long as the flow is steady; where it sheds vortices they do not
+/// survive.
+fn collision() -> [Parameter; 3] {
+    const SUITED: Parameter = Parameter::choice(
+        "collision",
+        &["suited", "central-moments", "cumulant", "regularised", "trt", "mrt", "bgk"],
+        "how populations relax; suited: trt while the flow is steady, else central-moments",
+    );
+    super::COLLISION.map(|parameter| match parameter.name {
+        "collision" => SUITED,
+        "magic" => parameter.only_with("collision", &["suited", "trt", "mrt"]),
+        _ => parameter,
+    })
 }
 
 prepare_with!(build);
@@ -72,12 +87,16 @@ fn build<T: Compiled>(
         openings: vec![opening(false, inlet), opening(true, outlet)],
         ..Physics::default()
     };
+    let mut scheme = super::scheme(parameters, LatticeKind::D2Q9, true);
+    if parameters.choice("collision") == "suited" && !scene.is_unsteady() {
+        scheme.collision = Collision::Trt { magic: parameters.number("magic") };
+    }
     super::scene(
         CylinderFlow { scene, spacing },
         &mesh,
         fluid,
         &physics,
-        &super::scheme(parameters, LatticeKind::D2Q9, true),
+        &scheme,
         &Start::with_velocity(move |x| scene.inflow(x)),
         super::description("channel-cylinder", parameters, precision),
     )

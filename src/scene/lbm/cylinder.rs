@@ -15,7 +15,7 @@ use crate::scene::{Precision, Report, SceneError};
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::LATTICE, super::WALL, super::RELAXATION_TIME];
-    [&cylinder::PARAMETERS[..], &super::collision_at_walls(), &own].concat()
+    [&cylinder::PARAMETERS[..], &super::slow_collision(), &own].concat()
 }
 
 prepare_with!(build);

@@ -16,7 +16,7 @@ use crate::scene::{Precision, Report, SceneError};
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::LATTICE, super::RELAXATION_TIME];
     let dim = [Parameter::integer("dim", 2, [2, 3], "dimensions")];
-    [&shear_wave::PARAMETERS[..], &super::COLLISION, &own, &dim].concat()
+    [&shear_wave::PARAMETERS[..], &super::without_eddies(), &own, &dim].concat()
 }
 
 prepare_with!(build);

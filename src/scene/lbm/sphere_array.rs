@@ -16,7 +16,7 @@ use crate::scene::{Precision, Report, SceneError};
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::LATTICE, super::WALL, super::RELAXATION_TIME];
-    [&sphere_array::PARAMETERS[..], &super::collision_at_walls(), &own].concat()
+    [&sphere_array::PARAMETERS[..], &super::slow_collision(), &own].concat()
 }
 
 prepare_with!(build);

@@ -15,7 +15,7 @@ use crate::scene::{Precision, Report, SceneError};
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::LATTICE, super::MACH.with_default(0.05)];
-    [&taylor_green::PARAMETERS[..], &super::COLLISION, &own].concat()
+    [&taylor_green::PARAMETERS[..], &super::without_eddies(), &own].concat()
 }
 
 prepare_with!(build);

@@ -20,7 +20,7 @@ const LENGTH: usize = 20;
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
     let own = [super::WALL, super::RELAXATION_TIME];
-    [&womersley::PARAMETERS[..], &super::collision_at_walls(), &own].concat()
+    [&womersley::PARAMETERS[..], &super::slow_collision(), &own].concat()
 }
 
 prepare_with!(build);
