@@ -8,7 +8,7 @@ use crate::operator::{Order, central, value};
 /// Coefficients of central differences along every axis, for packs.
 pub(crate) struct Weights<V, const R: usize> {
     /// Number of axes.
-    axes: usize,
+    pub axes: usize,
     first: [[V; R]; 3],
     second: [[V; R]; 3],
     /// Of the point itself in the second derivative.
@@ -85,6 +85,7 @@ pub(crate) struct Around<'a, V: Pack, const K: usize> {
 pub struct At<'a, V: Pack, const R: usize, const K: usize> {
     around: &'a Around<'a, V, K>,
     weights: &'a Weights<V, R>,
+    axes: usize,
     pack: usize,
 }
 
@@ -93,15 +94,16 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
     pub(crate) fn new(
         around: &'a Around<'a, V, K>,
         weights: &'a Weights<V, R>,
+        axes: usize,
         pack: usize,
     ) -> Self {
-        Self { around, weights, pack }
+        Self { around, weights, axes, pack }
     }
 
     /// Number of axes.
     #[inline(always)]
     pub fn axes(self) -> usize {
-        self.weights.axes
+        self.axes
     }
 
     /// The field here.

@@ -18,10 +18,10 @@ use crate::sweep::Sweep;
 #[repr(align(64))]
 #[derive(Clone)]
 pub(crate) struct Window<T>([T; WINDOW]);
-const WINDOW: usize = STRETCH + 2 * MARGIN;
-/// Rows up to so long are copied as one, a small part of the nearest cache: packs at ends cost as much as several
-/// others.
-const STRETCH: usize = 512;
+const WINDOW: usize = STRETCH / size_of::<f32>() + 2 * MARGIN;
+/// Rows of up to so many bytes are copied as one, a small part of the nearest cache: packs at ends cost as much as
+/// several others.
+const STRETCH: usize = 2048;
 /// Room for what lies beyond an end; packs behind it are aligned.
 const MARGIN: usize = MOST_LANES;
 
@@ -146,18 +146,19 @@ where
         [start, end]: [usize; 2],
         out: &mut Out<'_, '_, T, F>,
     ) {
+        let stretch = STRETCH / size_of::<T>();
         // Where packs read nothing beyond the row, in whole packs from its beginning.
         let first = if start >= R { start } else { R.next_multiple_of(V::LANES) };
         let last = end.min(self.unknowns[0].here.len() - R);
         let mut done = start;
         while done < end {
             let mut place = Place { x: done, count: 1, offset: None };
-            if end - done > STRETCH && first <= done && done + V::LANES <= last {
+            if end - done > stretch && first <= done && done + V::LANES <= last {
                 place.count = (last - done) / V::LANES;
             } else {
                 // The last pack begins before what has been done.
                 place.x = done.min(end - V::LANES);
-                if end - place.x <= STRETCH {
+                if end - place.x <= stretch {
                     place.count = (end - place.x) / V::LANES;
                 }
                 place.offset = Some(MARGIN);
@@ -343,16 +344,16 @@ impl<
 where
     E: Equation<V::Scalar, F, G>,
 {
-    /// The unknowns and their rates of change.
+    /// The unknowns and their rates of change, of an equation along so many axes.
     #[inline(always)]
-    fn rates(&self, pack: usize) -> [[V; F]; 2] {
-        let mut u = [At::new(&self.unknowns[0], self.weights, pack); F];
+    fn rates(&self, axes: usize, pack: usize) -> [[V; F]; 2] {
+        let mut u = [At::new(&self.unknowns[0], self.weights, axes, pack); F];
         for f in 1..F {
-            u[f] = At::new(&self.unknowns[f], self.weights, pack);
+            u[f] = At::new(&self.unknowns[f], self.weights, axes, pack);
         }
         let mut c = [u[0]; G];
         for g in 0..G {
-            c[g] = At::new(&self.given[g], self.weights, pack);
+            c[g] = At::new(&self.given[g], self.weights, axes, pack);
         }
         let rates = self.row.sweep.equation.rate(u, c, self.row.dt);
         let mut here = rates;
@@ -366,12 +367,26 @@ where
         [here, rates]
     }
 
+    /// Writes the next state, or the rates. Compiled for each number of axes, so that no pack asks how many there are.
+    #[inline(always)]
+    fn fill_along<const AXES: usize>(&self, targets: &mut Targets<'_, V::Vector, F>) {
+        let advance = self.row.advance;
+        for pack in 0..self.count {
+            let [here, rates] = self.rates(AXES, pack);
+            let mut next = [here[0].vector(); F];
+            for f in 0..F {
+                next[f] = advance.to(here[f], rates[f]).vector();
+            }
+            targets.write(pack, next);
+        }
+    }
+
     /// Advances what the targets hold.
     #[inline(always)]
     fn onto(self, targets: [&mut [V::Vector]; F]) {
         let advance = self.row.advance;
         for pack in 0..self.count {
-            let [here, rates] = self.rates(pack);
+            let [here, rates] = self.rates(self.weights.axes, pack);
             for f in 0..F {
                 prefetch(targets[f], pack + AHEAD);
                 let before = V::of(here[f].simd(), targets[f][pack]);
@@ -396,14 +411,10 @@ where
 {
     #[inline(always)]
     fn fill(self, targets: &mut Targets<'_, V::Vector, F>) {
-        let advance = self.row.advance;
-        for pack in 0..self.count {
-            let [here, rates] = self.rates(pack);
-            let mut next = [here[0].vector(); F];
-            for f in 0..F {
-                next[f] = advance.to(here[f], rates[f]).vector();
-            }
-            targets.write(pack, next);
+        match self.weights.axes {
+            3 => self.fill_along::<3>(targets),
+            2 => self.fill_along::<2>(targets),
+            _ => self.fill_along::<1>(targets),
         }
     }
 }
