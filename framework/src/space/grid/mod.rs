@@ -330,7 +330,7 @@ mod tests {
     fn tiles_are_numbered_strip_by_strip() {
         // Strips of 4, 4 and 3 tiles, of 8 rows but the last, which has 5.
         let grid = Grid::builder([1024, 85, 3]).tile(8, 1).build();
-        assert_eq!(grid.partition().len(), 11 * 3);
+        assert_eq!((grid.partition().len(), grid.partition().strip()), (11 * 3, Some(4)));
         let places = (0..33).map(|id| grid.sub_domain(id).rows().next().unwrap());
         let strips = [(0..4), (4..8), (8..11)].into_iter();
         let expected = strips.flat_map(|strip| {
