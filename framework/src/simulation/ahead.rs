@@ -4,10 +4,12 @@
 //! step `n`, its neighbour at step `n + 1`, and so on up to `K` steps ahead. It comes back to a
 //! sub-domain after some `K^d` others, `d` being the number of directions in which space is
 //! divided. While those are still in the cache, memory is read once in `K` steps instead of once
-//! a step. Where sub-domains are numbered in strips the front moves to the side by one with each step, and where that
-//! makes more than the strip is wide little of it stays from one step to the next: so `K` is no more than that. Measured on two cores with 32 MiB of shared cache, five-point heat in slabs of 128 KiB
+//! a step. Measured on two cores with 32 MiB of shared cache, five-point heat in slabs of 128 KiB
 //! to 1 MiB: the best `K` fills about half of a worker's share, and running past it loses what was
 //! gained.
+//!
+//! Where sub-domains are numbered in strips, the front moves to the side by one with each step; once it has
+//! left its strip, little of it stays in the cache. So `K` is no more than the strip is wide.
 
 use super::Model;
 use super::cache::cache_share;
