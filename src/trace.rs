@@ -1,9 +1,9 @@
 //! Traces as files that chrome://tracing and ui.perfetto.dev open.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
+use finegrain_framework::format::AtomicFile;
 use finegrain_framework::trace::{Event, Trace};
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ struct Place {
 /// # Errors
 /// If the file cannot be written.
 pub fn write(trace: &Trace, path: &Path) -> io::Result<()> {
-    let mut file = BufWriter::new(File::create(path)?);
+    let mut file = AtomicFile::create(path)?;
     write!(file, "{{\"traceEvents\": [")?;
     let legs = trace.workers();
     for row in 0..=legs {
@@ -72,5 +72,5 @@ pub fn write(trace: &Trace, path: &Path) -> io::Result<()> {
         }
     }
     writeln!(file, "]}}")?;
-    file.flush()
+    file.commit()
 }

@@ -53,6 +53,8 @@ fn scenes_are_listed_with_their_parameters() {
     for word in ["--method lbm", "solid_fraction", "between 0.001 and 0.5"] {
         assert!(cylinder.contains(word), "{word} in {cylinder}");
     }
+    let of_lbm = said(&["scenes", "cylinder", "--method", "lbm"]);
+    assert!(of_lbm.contains("collision") && !of_lbm.contains("kernel"), "{of_lbm}");
     assert!(!finegrain(&["scenes", "cylindre"], folder.path()).status.success());
 }
 
@@ -82,6 +84,13 @@ fn a_trace_shows_every_part_of_every_worker() {
     assert!(of_step(0) > 4 && (1..4).all(|step| of_step(step) == of_step(0)));
     let plain = json(&finegrain(&small(&["--steps", "4", "--json"]), folder.path()));
     assert_eq!(line["state_hash"], plain["state_hash"]);
+    // A run that fails leaves what stood there, and the checkpoint it should restart from is no place for a trace.
+    std::fs::write(folder.path().join("a"), "precious").unwrap();
+    for trace in ["trace.json", "a"] {
+        complaint(&small(&["--restart", "a", "--trace", trace]), folder.path());
+    }
+    assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "precious");
+    assert_eq!(std::fs::read_to_string(folder.path().join("trace.json")).unwrap(), text);
     let nowhere = small(&["--steps", "1", "--trace", "no/such/folder/t.json"]);
     assert!(
         complaint(&nowhere, folder.path()).contains("cannot write trace `no/such/folder/t.json`")
@@ -102,6 +111,83 @@ fn the_last_line_is_json_with_everything_in_it() {
         assert!(line[key].as_f64().is_some_and(|x| x > 0.0), "{key}");
     }
     assert!(line["results"]["decay_rate"].is_f64() && line["errors"]["decay_rate"].is_f64());
+}
+
+#[test]
+fn only_parameters_with_an_effect_are_in_the_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let has = |more: &[&str], name: &str| {
+        let orders = [&["--method", "lbm", "--steps", "1", "--json"], more].concat();
+        json(&finegrain(&small(&orders), folder.path()))["parameters"].get(name).is_some()
+    };
+    assert!(!has(&[], "lattice") && has(&["--set", "dim=3"], "lattice"));
+    assert!(!has(&[], "magic") && has(&["--set", "collision=trt"], "magic"));
+}
+
+#[test]
+fn who_stops_listening_loses_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_finegrain"))
+        .args(small(&["--steps", "2", "--out", "out"]))
+        .current_dir(folder.path())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert!(child.wait().unwrap().success());
+    for file in ["final.png", "fields.pvd", "checkpoint-000000002.ckpt"] {
+        assert!(folder.path().join("out").join(file).exists(), "{file}");
+    }
+}
+
+#[test]
+fn a_folder_with_files_of_an_earlier_run_is_pointed_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = || finegrain(&small(&["--steps", "2", "--out", "out"]), folder.path()).stderr;
+    let [first, second] = [run(), run()].map(|said| String::from_utf8(said).unwrap());
+    assert!(!first.contains("earlier run"), "{first}");
+    for word in ["earlier run", "checkpoint-000000002.ckpt", "final.png"] {
+        assert!(second.contains(word), "{word} in {second}");
+    }
+}
+
+#[test]
+fn small_scenes_take_few_workers_unless_more_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let workers = |more: &[&str]| {
+        let orders = [&["--steps", "1", "--json"], more].concat();
+        json(&finegrain(&small(&orders), folder.path()))["workers"].clone()
+    };
+    assert_eq!(workers(&[]), 1);
+    assert_eq!(workers(&["--workers", "3"]), 3);
+}
+
+#[test]
+fn a_flow_that_no_mesh_here_resolves_is_said_to_be_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let notes = |reynolds: &str| {
+        let orders = ["--method", "lbm", "--set", reynolds, "--steps", "2", "--json"];
+        json(&finegrain(&small(&orders), folder.path()))["notes"].to_string()
+    };
+    // 16 sites: up to a Reynolds number of 16^2.
+    assert!(!notes("reynolds=250").contains("not resolved"));
+    assert!(notes("reynolds=260").contains("grid Reynolds number"));
+}
+
+/// BGK on a mesh too coarse: populations grow for hundreds of steps before they are infinite.
+#[test]
+fn a_flow_that_has_lost_all_sense_ends_the_run_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = ["resolution=32", "collision=bgk", "reynolds=5000"];
+    let mut orders = vec!["run", "cavity", "--method", "lbm", "--until", "20", "--out", "out"];
+    settings.iter().for_each(|setting| orders.extend(["--set", setting]));
+    let said = complaint(&orders, folder.path());
+    assert!(said.contains("the flow is unstable; choose another collision"), "{said}");
+    let history = std::fs::read_to_string(folder.path().join("out/flow.csv")).unwrap();
+    let energies = history.lines().skip(1).map(|row| row.split(',').nth(2).unwrap());
+    let most = energies.map(|energy| energy.parse().unwrap()).fold(0.0, f64::max);
+    // Of a fluid that all moves as fast as the lid, 0.5; without the limit, 1e126.
+    assert!(most < 1e3, "kinetic energy {most}");
 }
 
 #[test]
@@ -209,7 +295,16 @@ fn bad_arguments_are_named_with_what_would_be_right() {
     says(&small(&["--method", "fem"]), &["fem", "sph, lbm"]);
     says(&small(&["--method", "lbm", "--set", "kernel=gaussian"]), &["kernel", "collision"]);
     says(&small(&["--schedule", "chaos"]), &["chaos", "peer-to-peer"]);
+    says(&small(&["--set", "resolution=4"]), &["scene \"taylor-green\"", "--method sph"]);
+    let kernel = ["run", "cylinder", "--method", "fd", "--set", "kernel=gaussian"];
+    says(&kernel, &["scene \"cylinder\"", "--method fd", "there is one with sph"]);
+    says(&["run", "cylinder", "--method", "fd", "--set", "dim=3"], &["it must be 2 only"]);
+    let implicit = ["run", "heat", "--set", "courant=2"];
+    says(&implicit, &["courant = 2", "at most 1 with integrator = rk4"]);
+    says(&["run", "."], &["`.` is no scene file", ".toml"]);
     says(&small(&["--workers", "0"]), &["workers", "0"]);
+    says(&small(&["--steps", "-3"]), &["-3", "at least 0"]);
+    says(&small(&["--out", "out", "--dump-every", "0"]), &["0", "at least 1"]);
     says(&small(&["--until", "-1"]), &["-1"]);
     says(&small(&["--checkpoint-every", "5"]), &["--out"]);
     says(&small(&["--restart", "nowhere.ckpt"]), &["nowhere.ckpt"]);
@@ -235,7 +330,7 @@ fn bad_scene_files_are_named_with_line_and_key() {
         "scene = \"cylinder\"\n[parameters]\nresolution = 5\n",
         &["resolution = 5", "between 10 and"],
     );
-    says("scene = \"cylinder\"\n[parameters]\nresolution = [5]\n", &["resolution"]);
+    says("scene = \"cylinder\"\n[parameters]\nresolution = [5]\n", &["line 3", "resolution"]);
     says("scene = \"nothing\"\n", &["nothing", "cylinder"]);
     says("scene = ", &["line 1"]);
     says("", &["scene"]);
@@ -279,6 +374,7 @@ fn a_checkpoint_of_another_scene_or_a_damaged_one_is_refused() {
     assert!(said.contains("resolution = 16 in the checkpoint, resolution = 18 here"), "{said}");
     let said = complaint(&small(&["--restart", path, "--steps", "3"]), folder.path());
     assert!(said.contains("step 4, past step 3"), "{said}");
+    assert!(!said.contains("last good checkpoint"), "{said}");
     let said = complaint(&small(&["--restart", "nowhere.ckpt"]), folder.path());
     assert!(said.contains("nowhere.ckpt") && said.contains("No such file"), "{said}");
     let mut bytes = std::fs::read(&checkpoint).unwrap();

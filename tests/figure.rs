@@ -105,6 +105,20 @@ fn a_field_of_points_shows_its_values_to_scale() {
 }
 
 #[test]
+fn periodic_images_fill_the_ends_of_the_window() {
+    // Points on the lower ends only: the upper ones lie a spacing away from the nearest.
+    let unfilled = |periodic: bool| {
+        let field = Field::of_points(lattice(|_, _| 1.0), 0.1)
+            .window([0.0, 0.0], [4.0, 2.0])
+            .periodic([periodic; 2]);
+        let (.., colours) = saved(|path| field.save(path));
+        colours[&[255; 3]]
+    };
+    let (open, closed) = (unfilled(false), unfilled(true));
+    assert!(closed + 1000 < open, "{closed} white pixels with images, {open} without");
+}
+
+#[test]
 fn a_field_on_a_grid_shows_its_values() {
     let values = (0..600).map(|k| k as f64);
     let field = Field::of_grid([30, 20], [0.0; 2], [0.1; 2], values).width(700);

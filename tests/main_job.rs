@@ -97,6 +97,9 @@ fn the_benchmark_measures_what_it_says() {
         // The line of the measurements, beside text and axes.
         assert!(colours.get(&[0x00, 0x72, 0xb2]).is_some_and(|&n| n > 100), "{picture} is empty");
     }
+    let (.., colours) = decoded(&out.join("flow.png"));
+    assert!(colours.len() > 100, "the flow has {} colours", colours.len());
+    assert!(said.contains("flow.png"), "{said}");
     for workers in ["workers-1", "workers-2"] {
         assert!(out.join(workers).join("results.pvd").exists());
     }

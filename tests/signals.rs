@@ -94,6 +94,26 @@ fn a_request_to_stop_ends_the_run_in_order_with_a_checkpoint() {
     }
 }
 
+/// In the moment when the steps are done and the rest is being written, as good as can be met.
+#[test]
+fn a_request_to_stop_that_comes_late_loses_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let last = ["--steps", "3", "--out", "out", "--set", "resolution=200"];
+    let child = finegrain(folder.path(), &last)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut run = Running { child: Some(child), folder };
+    run.until(|folder| !checkpoints(folder).is_empty());
+    let id = run.child.as_ref().unwrap().id().to_string();
+    // Too late is no failure.
+    let _ = Command::new("kill").args(["-INT", &id]).status().unwrap();
+    let output = run.end();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(run.folder.path().join("out/final.png").exists());
+}
+
 #[test]
 fn a_request_for_a_checkpoint_leaves_one_while_the_run_goes_on() {
     let mut run = Running::start();

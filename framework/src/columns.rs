@@ -123,7 +123,17 @@ pub struct Column {
     role: Role,
     kind: ElementKind,
     kept: bool,
+    limit: Option<&'static Limit>,
     lines: Memory,
+}
+
+/// How far values of a column may be from zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// The largest magnitude.
+    pub most: f64,
+    /// What it means if there is a larger one.
+    pub beyond: &'static str,
 }
 
 impl Column {
@@ -140,6 +150,16 @@ impl Column {
     /// Element type.
     pub fn kind(&self) -> ElementKind {
         self.kind
+    }
+
+    /// How far its values may be from zero; `None` if all that are finite are valid.
+    pub fn limit(&self) -> Option<&'static Limit> {
+        self.limit
+    }
+
+    /// The largest magnitude that is valid.
+    pub(crate) fn most(&self) -> f64 {
+        self.limit.map_or(f64::MAX, |limit| limit.most)
     }
 
     /// Whether its values live from one step to the next, so that a checkpoint needs them.
@@ -234,6 +254,14 @@ impl Columns {
         self.columns[column.0 as usize].kept = true;
     }
 
+    /// Says how far values of a state column may be from zero: larger ones end the run as those do that are
+    /// not finite, and wherever those are looked for
+    /// ([`Settings::check_every`](crate::Settings::check_every)). What has lost all sense may take hundreds of
+    /// steps more to grow out of the range of floats.
+    pub fn limit<T: Element>(&mut self, column: State<T>, limit: &'static Limit) {
+        self.columns[column.id().0 as usize].limit = Some(limit);
+    }
+
     fn declare(&mut self, name: &str, role: Role, kind: ElementKind, kept: bool) -> ColumnId {
         assert!(
             self.columns.iter().all(|c| c.name != name),
@@ -245,6 +273,7 @@ impl Columns {
             role,
             kind,
             kept,
+            limit: None,
             lines: Memory::new(self.columns.len(), Column::lines_for(kind, self.points)),
         });
         ColumnId((self.columns.len() - 1) as u16)

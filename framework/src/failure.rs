@@ -1,5 +1,6 @@
 //! Why a run ended too early.
 
+use crate::columns::{Column, Limit};
 use crate::stage::Fault;
 
 /// What went wrong in a leg, and where.
@@ -32,4 +33,24 @@ pub enum Cause {
         /// Name of the column.
         column: String,
     },
+    /// A state column holds a value beyond its limit ([`Columns::limit`](crate::Columns::limit)), NaN or
+    /// infinity.
+    #[error("column {column:?} holds a value that is not between -{most} and {most}: {beyond}", most = limit.most, beyond = limit.beyond)]
+    Beyond {
+        /// Name of the column.
+        column: String,
+        /// Its limit.
+        limit: &'static Limit,
+    },
+}
+
+impl Cause {
+    /// That a column holds what it must not.
+    pub(crate) fn invalid(column: &Column) -> Self {
+        let name = column.name().to_owned();
+        match column.limit() {
+            Some(limit) => Self::Beyond { column: name, limit },
+            None => Self::NotFinite { column: name },
+        }
+    }
 }

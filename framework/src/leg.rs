@@ -156,7 +156,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         })?;
         let is_checked = self.watch.check_every.is_some_and(|n| (step + 1).is_multiple_of(n));
         if is_checked && Some(part) == self.step.last_of_workers() {
-            self.check_finite(worker, step, part, sub_domain)?;
+            self.check_values(worker, step, part, sub_domain)?;
         }
         Ok(())
     }
@@ -193,7 +193,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         }
     }
 
-    fn check_finite(
+    fn check_values(
         &self,
         worker: usize,
         step: u64,
@@ -206,10 +206,9 @@ impl<'a, D: Domain> Leg<'a, D> {
         // SAFETY: as an update part; the workers' last part has just been run here, and what it owned is
         // looked at.
         let own = unsafe { Own::new(Place { shifts: &self.step.last_shifts, ..place }) };
-        match self.desk.checked.iter().find(|&&id| !own.is_finite(id)) {
-            Some(&id) => {
-                Err(Cause::NotFinite { column: self.columns.column(id).name().to_owned() })
-            }
+        let mut columns = self.desk.checked.iter().map(|&id| (id, self.columns.column(id)));
+        match columns.find(|(id, column)| !own.is_valid(*id, column.most())) {
+            Some((_, column)) => Err(Cause::invalid(column)),
             None => Ok(()),
         }
     }
@@ -257,7 +256,7 @@ impl<D: Domain> Work for Leg<'_, D> {
             Err(panic) => Cause::Panic(panic_message(panic)),
         };
         let stage = match &cause {
-            Cause::NotFinite { .. } => self.step.part_name(part),
+            Cause::NotFinite { .. } | Cause::Beyond { .. } => self.step.part_name(part),
             _ => self.step.stages[self.step.entries[at.get()].stage].name().to_owned(),
         };
         self.fail(Failure { step, part, stage, sub_domain: Some(sub_domain), cause });

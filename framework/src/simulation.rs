@@ -20,7 +20,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::activity::Activities;
 use crate::clock::Clock;
-use crate::columns::{Column, Columns, Role};
+use crate::columns::{Column, ColumnId, Columns, Role};
 use crate::desk::Desk;
 use crate::domain::Domain;
 use crate::failure::{Cause, Failure};
@@ -59,8 +59,8 @@ impl<D: Domain> Simulation<D> {
     /// If the system refuses threads, or there are to be no workers.
     ///
     /// # Panics
-    /// If the step swaps columns of different types: its handles belong to other columns. If derived
-    /// fields are updated instead of computed anew, or are kept from step to step: looking must not
+    /// If the step swaps columns of different types: its handles belong to other columns; or a rate that none of
+    /// its stages writes. If derived fields are updated instead of computed anew, or are kept from step to step: looking must not
     /// change what is computed (what whole-domain stages do is not looked at).
     pub fn new(model: Model<D>, settings: Settings) -> std::io::Result<Self> {
         for stage in model.plan.derived.iter().flat_map(|step| &step.stages) {
@@ -74,6 +74,18 @@ impl<D: Domain> Simulation<D> {
         let mut executor =
             Executor::new(settings.schedule, settings.workers, settings.hand_out.clone())?;
         let step = &model.plan.step;
+        for &(a, b) in &step.pairs {
+            let is_written = |id: &ColumnId| step.stages.iter().any(|s| s.writes().contains(*id));
+            let is_rate = |id: &ColumnId| model.columns.column(*id).role() == Role::Rate;
+            let mut rates = [a, b].into_iter().filter(is_rate).peekable();
+            if let Some(&rate) = rates.peek() {
+                let name = model.columns.column(rate).name();
+                assert!(
+                    rates.any(|id| is_written(&id)),
+                    "column {name:?} is swapped but no stage writes it"
+                );
+            }
+        }
         let trace = (settings.trace > 0).then(|| {
             let parts = (0..step.parts()).map(|part| step.part_name(part)).collect();
             Trace::new(parts, executor.team().workers(), settings.trace)
@@ -311,7 +323,7 @@ impl<D: Domain> Simulation<D> {
         Err(self.error_now(stage, None, cause))
     }
 
-    /// Makes sure that all state is finite now, unless [`Settings::check_every`] is `None`.
+    /// Makes sure that all state is finite and within its limits now, unless [`Settings::check_every`] is `None`.
     ///
     /// # Errors
     /// Names the column and the sub-domain.
@@ -320,10 +332,9 @@ impl<D: Domain> Simulation<D> {
             return Ok(());
         }
         for (id, column) in self.columns().iter().filter(|(_, c)| c.role() == Role::State) {
-            if let Some(point) = self.columns().any_values(id).first_not_finite() {
+            if let Some(point) = self.columns().any_values(id).first_beyond(column.most()) {
                 let owner = self.domain().partition().owner(point);
-                let cause = Cause::NotFinite { column: column.name().to_owned() };
-                return Err(self.error_now("check between steps", owner, cause));
+                return Err(self.error_now("check between steps", owner, Cause::invalid(column)));
             }
         }
         Ok(())

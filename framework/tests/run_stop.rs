@@ -113,6 +113,10 @@ fn when_a_criterion_is_met() {
     let again = steady(1).restart_from(checkpoint).run().unwrap();
     assert_eq!((again.stopped, again.step), (Stopped::Criterion, 10));
     assert_eq!(again.state_hash, all.state_hash);
+    // Where it was met, it is met still.
+    let done = steady(2).restart_from(all.last_checkpoint.unwrap()).run().unwrap();
+    assert_eq!((done.stopped, done.steps_done), (Stopped::Criterion, 0));
+    assert_eq!(done.state_hash, all.state_hash);
 }
 
 #[test]

@@ -155,6 +155,58 @@ fn values_that_are_not_finite() {
     }
 }
 
+/// What has lost all sense is found long before it is infinite: wherever it is, in a leg and between steps.
+#[test]
+fn values_beyond_their_limit() {
+    fn outcomes<T: Real>(
+        value: f64,
+        place: usize,
+        limit: &'static Limit,
+    ) -> [Result<(), RunError>; 2] {
+        let domain = Grid::builder([72]).tile(1, 1).build();
+        let mut columns = Columns::new(domain.points());
+        let level = columns.state::<T>("level");
+        columns.limit(level, limit);
+        columns.values_mut(level)[place] = T::of(value);
+        let idle = update_stage("idle", |_, _| Ok(()));
+        let step = Step::builder().stage_at(0.0, &idle).build();
+        let model = Model::with_fixed_dt("idle", domain, columns, step, 0.25);
+        let settings = Settings { check_every: Some(1), ..Settings::default() };
+        let mut simulation = Simulation::new(model, settings).unwrap();
+        [simulation.check_finite(), simulation.advance(1)]
+    }
+    let limit = &Limit { most: 2.0, beyond: "the level is too high" };
+    let cause = Cause::Beyond { column: "level".to_owned(), limit };
+    for place in 0..72 {
+        for (value, is_valid) in
+            [(2.0, true), (-2.0, true), (2.5, false), (-2.5, false), (f64::NAN, false)]
+        {
+            for outcome in
+                [outcomes::<f32>(value, place, limit), outcomes::<f64>(value, place, limit)]
+                    .concat()
+            {
+                let expected = if is_valid { None } else { Some(cause.clone()) };
+                assert_eq!(outcome.err().map(|e| e.cause), expected, "{value} at {place}");
+            }
+        }
+    }
+    assert!(cause.to_string().ends_with("not between -2 and 2: the level is too high"));
+}
+
+#[test]
+#[should_panic(expected = "column \"next\" is swapped but no stage writes it")]
+fn a_swap_with_what_nobody_writes() {
+    let domain = Grid::builder([8]).tile(1, 1).build();
+    let mut columns = Columns::new(domain.points());
+    let (level, next) = (columns.state::<f64>("level"), columns.rate::<f64>("next"));
+    let idle = update_stage("idle", |_, _| Ok(()));
+    let step = Step::builder().stage_at(0.0, &idle).swap(level, next).build();
+    let _ = Simulation::new(
+        Model::with_fixed_dt("idle", domain, columns, step, 0.25),
+        Settings::default(),
+    );
+}
+
 /// Checked every three steps, a NaN of step 4 is found after step 5, in the neighbourhood.
 #[test]
 fn a_nan_is_found_at_the_next_check() {

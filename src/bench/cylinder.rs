@@ -20,12 +20,14 @@ use finegrain_framework::trace::Trace;
 use finegrain_framework::{Real, Schedule, Settings, Simulation};
 use finegrain_sph::packing::{Lattice, PackingError};
 use finegrain_sph::{
-    Fluid, Packing, Pairs, Physics, Scheme, Sph, StateEquation, Viscosity, measure,
+    Fields, Fluid, Packing, Pairs, Physics, Scheme, Sph, StateEquation, Viscosity, measure,
 };
 
 use super::memory;
 use super::row::{Row, Turn};
-use crate::scene::{Precision, SceneError, sph::cylinder::start};
+use crate::figure::{Field, Outline};
+use crate::scene::sph::{cylinder::start, picture};
+use crate::scene::{Precision, SceneError};
 
 /// Particle spacing of the paper, m.
 pub const SPACING: f64 = 0.0002;
@@ -101,11 +103,19 @@ pub(super) fn model<T: Real, P: Real>(width: f64, plan: &Plan) -> Result<Sph<T, 
     Ok(Sph::new(&start(3, &lattice, SPACING), &fluid, &physics, &scheme)?)
 }
 
+/// What a plan comes to.
+pub struct Measured {
+    /// A row for each width and number of workers.
+    pub rows: Vec<Row>,
+    /// The flow at the end of the last run with the most workers.
+    pub flow: Option<Field>,
+}
+
 /// Measures everything in `plan`; `say` hears of every sample.
 ///
 /// # Errors
 /// If the model cannot be built or run, or results cannot be written.
-pub fn measure(plan: &Plan, mut say: impl FnMut(&Row)) -> Result<Vec<Row>, SceneError> {
+pub fn measure(plan: &Plan, mut say: impl FnMut(&Row)) -> Result<Measured, SceneError> {
     match plan.precision {
         Precision::F32 => measure_in::<f32, f32>(plan, &mut say),
         Precision::F64 => measure_in::<f64, f64>(plan, &mut say),
@@ -123,10 +133,11 @@ const WARM_UP: u64 = 5;
 fn measure_in<T: Real, P: Real>(
     plan: &Plan,
     say: &mut impl FnMut(&Row),
-) -> Result<Vec<Row>, SceneError> {
+) -> Result<Measured, SceneError> {
     // Memory before anything else: allocators keep some of what many runs at once have freed.
     let groups = plan.widths.iter().map(|&width| empty_rows::<T, P>(plan, width));
     let mut groups = groups.collect::<Result<Vec<_>, _>>()?;
+    let mut flow = None;
     let one = plan.workers.iter().position(|&workers| workers == 1);
     for (group, &width) in groups.iter_mut().zip(&plan.widths) {
         for _ in 0..plan.repeats {
@@ -141,9 +152,10 @@ fn measure_in<T: Real, P: Real>(
                 }
                 say(row);
             }
+            flow = sample.flow;
         }
     }
-    Ok(groups.concat())
+    Ok(Measured { rows: groups.concat(), flow })
 }
 
 /// A row for each number of workers without samples yet: what does not need a clock, from a run of
@@ -152,7 +164,7 @@ fn empty_rows<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Vec<Row>, Sce
     let mut rows = Vec::new();
     for &workers in &plan.workers {
         memory::reset_peak();
-        let mut run = start_run::<T, P>(plan, width, workers, Tracing::Off)?;
+        let (mut run, _) = start_run::<T, P>(plan, width, workers, Tracing::Off)?;
         run.run()?;
         // Before anything else is allocated.
         let peak_memory = memory::peak();
@@ -181,12 +193,15 @@ struct Sample {
     together: Vec<Vec<Turn>>,
     /// Seconds a step of separate runs with one worker each, as many as the most workers.
     apart: Vec<f64>,
+    /// The flow at the end.
+    flow: Option<Field>,
 }
 
 /// Numbers of workers take turns, and the separate runs with them.
 fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Sample, SceneError> {
     let start = |&workers| start_run::<T, P>(plan, width, workers, Tracing::On);
-    let mut together = plan.workers.iter().map(start).collect::<Result<Vec<_>, _>>()?;
+    let started = plan.workers.iter().map(start).collect::<Result<Vec<_>, _>>()?;
+    let (mut together, fields): (Vec<_>, Vec<_>) = started.into_iter().unzip();
     let separate = plan.out.join("separate");
     let mut apart = start_apart::<T, P>(plan, width, &separate)?;
     for run in &mut together {
@@ -194,7 +209,8 @@ fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Sample, SceneErro
     }
     side_by_side(&mut apart)?;
 
-    let mut sample = Sample { together: vec![Vec::new(); together.len()], apart: Vec::new() };
+    let mut sample =
+        Sample { together: vec![Vec::new(); together.len()], apart: Vec::new(), flow: None };
     for begin in (0..plan.steps).step_by(TURN as usize) {
         let end = (begin + TURN).min(plan.steps);
         let count = (end - begin) as f64;
@@ -211,10 +227,21 @@ fn sample<T: Real, P: Real>(plan: &Plan, width: f64) -> Result<Sample, SceneErro
             sample.apart.push(side_by_side(&mut apart)? / count);
         }
     }
+    sample.flow = together.last().zip(fields.last()).map(|(run, fields)| {
+        let steps = WARM_UP + plan.steps;
+        let title = format!("Flow past the cylinder, {steps} steps after it was at rest");
+        picture(run.simulation(), fields, title, SPACING).outline(outline(run.simulation()))
+    });
     drop(apart);
     // Their dumps were only written because the others' are; what cannot be removed does no harm.
     let _ = fs::remove_dir_all(separate);
     Ok(sample)
+}
+
+/// Of the cylinder.
+fn outline<P: Real>(simulation: &Simulation<Cells<P>>) -> Outline {
+    let upper = &simulation.domain().region().upper;
+    Outline::Circle { centre: [0.5 * upper[0], 0.5 * upper[1]], radius: RADIUS }
 }
 
 /// As many separate runs as the most workers, with what they write in `folder`; none where there is nothing to
@@ -230,7 +257,7 @@ fn start_apart<T: Real, P: Real>(
     }
     let started = at_the_same_time((0..most).map(|number| {
         move || {
-            let run = start_run::<T, P>(plan, width, 1, Tracing::On)?;
+            let (run, _) = start_run::<T, P>(plan, width, 1, Tracing::On)?;
             Ok(run.out(folder.join(number.to_string())))
         }
     }));
@@ -279,6 +306,9 @@ enum Tracing {
     Off,
 }
 
+/// A run, and where its model keeps what.
+type Started<T, P> = (Run<Cells<P>>, Fields<T, P>);
+
 /// A run that is ready for its first step, and to end when it is warm; traced, it remembers as many
 /// parts as there are particles, which is more than a turn's: a sub-domain has 256 particles.
 fn start_run<T: Real, P: Real>(
@@ -286,7 +316,7 @@ fn start_run<T: Real, P: Real>(
     width: f64,
     workers: usize,
     tracing: Tracing,
-) -> Result<Run<Cells<P>>, SceneError> {
+) -> Result<Started<T, P>, SceneError> {
     let sph = model::<T, P>(width, plan)?;
     let trace = if tracing == Tracing::On { sph.model.columns.points() } else { 0 };
     let settings = Settings { schedule: plan.schedule, workers, trace, ..Settings::default() };
@@ -298,5 +328,6 @@ fn start_run<T: Real, P: Real>(
         .scalar("density")
         .vector("velocity", ["velocity_x", "velocity_y", "velocity_z"]);
     // The runs of different numbers of workers are under way at the same time.
-    Ok(Run::new(simulation).out(dump_folder(plan, workers)).dump(dump).until(steps(WARM_UP)))
+    let run = Run::new(simulation).out(dump_folder(plan, workers)).dump(dump);
+    Ok((run.until(steps(WARM_UP)), sph.fields))
 }

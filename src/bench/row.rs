@@ -64,6 +64,12 @@ impl Row {
         best(&self.turns).unwrap_or(f64::NAN)
     }
 
+    /// Seconds a step of the worst turn over those of the best; not a number without turns.
+    pub fn scatter(&self) -> f64 {
+        let worst = self.turns.iter().map(|turn| turn.seconds).reduce(f64::max);
+        worst.unwrap_or(f64::NAN) / self.best()
+    }
+
     /// Speed-up over one worker (eq. 9): median seconds a step with one over median seconds a step with
     /// these. The turns of both lie side by side, so that a machine whose speed drifts slows both.
     pub fn speed_up(&self) -> Option<f64> {
@@ -201,6 +207,7 @@ mod tests {
         assert!((row.seconds() - 0.65).abs() < 1e-12);
         assert!((row.speed_up().unwrap() - 1.2 / 0.65).abs() < 1e-12);
         assert!((row.best_speed_up().unwrap() - 1.0 / 0.5).abs() < 1e-12);
+        assert!((row.scatter() - 0.8 / 0.5).abs() < 1e-12);
         let product = row.stage_efficiency().unwrap() * row.schedule_efficiency().unwrap();
         assert!((product - row.efficiency().unwrap()).abs() < 1e-12);
         assert_eq!(row.machine_efficiency(), None);

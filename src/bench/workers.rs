@@ -7,6 +7,12 @@ pub fn doubling(most: usize) -> Vec<usize> {
     numbers
 }
 
+/// So many workers, in words.
+pub fn counted(workers: usize) -> String {
+    let plural = if workers == 1 { "" } else { "s" };
+    format!("{workers} worker{plural}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::doubling;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 use finegrain::bench::breakdown::{self, Breakdown};
-use finegrain::bench::cylinder::{self, Plan};
+use finegrain::bench::cylinder::{self, Measured, Plan};
 use finegrain::bench::figures;
 use finegrain::bench::row::{self, Row};
 use finegrain::bench::workers;
@@ -14,6 +14,7 @@ use finegrain::scene::{Precision, SceneError};
 use finegrain::sph::{Pairs, Viscosity};
 
 use super::CommandError;
+use super::run::at_least;
 
 /// Benchmarks.
 #[derive(Subcommand)]
@@ -70,7 +71,7 @@ pub struct CylinderArguments {
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Vec<u16>,
     /// Steps of a sample.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 20, value_parser = at_least::<1>)]
     steps: u64,
     /// Samples of each number of workers; they take turns every 10 steps.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
@@ -135,22 +136,29 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
         finegrain::framework::lanes::instruction_set()
     )?;
     boxes(out, &plan)?;
-    let rows = cylinder::measure(&plan, |row| {
+    let Measured { rows, flow } = cylinder::measure(&plan, |row| {
         let last = row.turns.last().map_or(0.0, |turn| turn.seconds);
         // Only progress: who does not listen misses nothing.
         let _ = writeln!(
             std::io::stderr(),
-            "  {} particles, {} workers: {last:.4} s/step",
+            "  {} particles, {}: {last:.4} s/step",
             row.particles,
-            row.workers
+            workers::counted(row.workers)
         );
     })?;
-    table(out, &rows)?;
+    // All files before the numbers are said, for who reads may stop listening.
     row::write_csv(&plan.out.join("cylinder.csv"), &rows)?;
+    let mut pictures = figures::draw(&plan.out, &rows)?;
+    if let Some(flow) = flow {
+        let path = plan.out.join("flow.png");
+        flow.save(&path)?;
+        pictures.push(path);
+    }
     let breakdown = breakdown::measure(&plan)?;
-    breakdown_table(out, &breakdown)?;
     breakdown.write_csv(&plan.out.join("where-time-goes.csv"))?;
-    let pictures = figures::draw(&plan.out, &rows)?;
+    table(out, &rows)?;
+    doubts(out, &rows)?;
+    breakdown_table(out, &breakdown)?;
     writeln!(out, "\nnumbers:  {}", plan.out.join("cylinder.csv").display())?;
     for picture in pictures {
         writeln!(out, "picture:  {}", picture.display())?;
@@ -233,6 +241,24 @@ fn table(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
              Minteractions: million pair interactions a second and core in whole steps (median), {:.1}\n\
              neighbours a particle visited in {} sweep(s) a step; every visit counts",
             row.neighbours, row.sweeps
+        )?;
+    }
+    Ok(())
+}
+
+/// Worst over best turn from which on a row is not to be trusted.
+const SCATTER: f64 = 1.5;
+
+/// Says which rows are not to be trusted.
+fn doubts(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
+    for row in rows.iter().filter(|row| row.scatter() > SCATTER) {
+        writeln!(
+            out,
+            "note: width {} m, {}: the slowest turn took {:.1} times as long as the fastest; the machine was \
+             busy, and this row is not to be trusted",
+            row.width,
+            workers::counted(row.workers),
+            row.scatter()
         )?;
     }
     Ok(())

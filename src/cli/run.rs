@@ -1,16 +1,18 @@
 //! `finegrain run`.
 
+use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use clap::Args;
-use finegrain::bench::memory;
+use finegrain::bench::{memory, workers};
 use finegrain::framework::Schedule;
+use finegrain::framework::format::AtomicFile;
 use finegrain::framework::port::Port;
 use finegrain::framework::run::Progress;
-use finegrain::scene::{Orders, Parameters, Precision, Report, Scene};
+use finegrain::scene::{Orders, Parameters, Precision, Report, Scene, SceneError, Value};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -30,8 +32,9 @@ pub struct RunArguments {
     /// Numerical method; the scene's first by default.
     #[arg(long)]
     method: Option<String>,
-    /// Number of worker threads; all cores by default.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Number of worker threads; all cores by default, but at most one for every 500 particles of SPH, 4,000 sites
+    /// of lattice Boltzmann or 8,000 points of finite differences. The bits do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     workers: Option<u16>,
     /// How workers meet: serial, lockstep, peer-to-peer, fork-join or fixed.
     #[arg(long, default_value_t)]
@@ -40,10 +43,11 @@ pub struct RunArguments {
     #[arg(long)]
     precision: Option<Precision>,
     /// End after so many steps, counted from time 0; without this and --until a scene ends by itself.
-    #[arg(long)]
+    #[arg(long, value_parser = at_least::<0>, allow_negative_numbers = true)]
     steps: Option<u64>,
-    /// End at this time, in seconds, counted from time 0; steps are made a little shorter to hit it:
-    /// the last ones, or all of a method with a fixed time step.
+    /// End at this time, in seconds, counted from time 0. To hit it steps are made a little shorter, the last ones
+    /// or all of a method with a fixed time step; lattice Boltzmann and implicit steps, which cannot be, end with
+    /// the first step that reaches it.
     #[arg(long, value_parser = positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// End after so many seconds of wall-clock time, in order; --restart goes on from there.
@@ -55,11 +59,11 @@ pub struct RunArguments {
     out: Option<PathBuf>,
     /// Dump fields for ParaView every so many steps (needs --out); ten times in a run by default. The
     /// beginning and the end are always shown.
-    #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, requires = "out", value_parser = at_least::<1>, allow_negative_numbers = true)]
     dump_every: Option<u64>,
     /// Write OUT/checkpoint-STEP.ckpt every so many steps (needs --out), and keep the last three. One
     /// is always written at the end, Ctrl-C and SIGTERM included, and (with --out) whenever SIGUSR1 comes.
-    #[arg(long, requires = "out", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, requires = "out", value_parser = at_least::<1>, allow_negative_numbers = true)]
     checkpoint_every: Option<u64>,
     /// Write which worker ran which sub-domain's which stage when, the last 200,000 parts of each
     /// worker, as a trace that chrome://tracing and ui.perfetto.dev open; and say what it sums up to.
@@ -81,6 +85,14 @@ pub fn setting(text: &str) -> Result<(String, String), String> {
         .ok_or_else(|| format!("{text:?} is not of the form KEY=VALUE"))
 }
 
+/// A whole number that is not too small.
+pub fn at_least<const LEAST: u64>(text: &str) -> Result<u64, String> {
+    text.parse()
+        .ok()
+        .filter(|n: &u64| *n >= LEAST)
+        .ok_or_else(|| format!("{text:?} is not a whole number of at least {LEAST}"))
+}
+
 fn positive(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
@@ -97,7 +109,8 @@ fn duration(text: &str) -> Result<Duration, String> {
 struct Line<'a> {
     scene: &'a str,
     method: &'a str,
-    parameters: &'a Parameters,
+    /// Those that have an effect.
+    parameters: BTreeMap<&'static str, &'a Value>,
     precision: Precision,
     schedule: &'a str,
     workers: usize,
@@ -111,8 +124,8 @@ struct Line<'a> {
     points: usize,
     point_steps_per_s: f64,
     state_hash: String,
-    results: &'a std::collections::BTreeMap<&'static str, f64>,
-    errors: &'a std::collections::BTreeMap<&'static str, f64>,
+    results: &'a BTreeMap<&'static str, f64>,
+    errors: &'a BTreeMap<&'static str, f64>,
     notes: &'a [String],
     files: &'a [PathBuf],
 }
@@ -132,16 +145,32 @@ A scene file is TOML; all but the scene's name may be left out:
 What the command line says goes over it.
 
 Signals: Ctrl-C and SIGTERM end the run in order, with a checkpoint if there is --out; a second one ends
-the process. SIGUSR1 asks for a checkpoint, and the run goes on: kill -USR1 PID.
+the process at once. SIGUSR1 asks for a checkpoint, and the run goes on: kill -USR1 PID.
 
-Exit code: 0 when the run ended in order (Ctrl-C and SIGTERM included), 1 after an error (an unknown scene or parameter, a value out of its range, and whatever ends
-a run too early), 2 for options that do not exist or cannot be read, 130 after a second Ctrl-C or SIGTERM.";
+Exit code: 0 when the run ended in order (Ctrl-C and SIGTERM included), 1 after an error (an unknown scene or
+parameter, a value out of its range, and whatever ends a run too early), 2 for options that do not exist or cannot be read, 130 after a second Ctrl-C or SIGTERM.";
 
-/// The checkpoint with the largest number in a folder.
-fn last_checkpoint(folder: &Path) -> Option<String> {
-    let files = std::fs::read_dir(folder).ok()?.filter_map(Result::ok);
+/// What an earlier run has left in a folder, single fields aside; empty if nothing.
+fn left_behind(folder: &Path) -> String {
+    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
     let names = files.filter_map(|file| file.file_name().into_string().ok());
-    names.filter(|name| name.starts_with("checkpoint-") && name.ends_with(".ckpt")).max()
+    let is_of_a_run = |name: &String| {
+        [".ckpt", ".csv", ".pvd", ".png"].iter().any(|ending| name.ends_with(ending))
+    };
+    let mut names: Vec<_> = names.filter(is_of_a_run).collect();
+    names.sort_unstable();
+    names.join(", ")
+}
+
+/// A failure that names its last checkpoint once.
+fn told_once(mut error: SceneError) -> SceneError {
+    if let SceneError::Run(failed) = &mut error
+        && let Some(path) = &failed.last_checkpoint
+        && failed.cause.to_string().contains(&path.display().to_string())
+    {
+        failed.last_checkpoint = None;
+    }
+    error
 }
 
 /// Runs a scene and says what it came to.
@@ -155,7 +184,12 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     let in_file = |error: CommandError| -> CommandError {
         if is_file { format!("scene file `{}`: {error}", arguments.scene).into() } else { error }
     };
-    let scene = Scene::find(&file.scene).map_err(|e| in_file(e.into()))?;
+    let scene = Scene::find(&file.scene).map_err(|e| -> CommandError {
+        if is_file || !Path::new(&arguments.scene).exists() {
+            return in_file(e.into());
+        }
+        format!("`{}` is no scene file, whose name would end in .toml; {e}", arguments.scene).into()
+    })?;
     // What the command line says goes over what the file says; each answers for its own mistakes.
     let is_files_method = arguments.method.is_none();
     let method = arguments.method.or(file.method.clone());
@@ -176,19 +210,28 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         .map_err(|e| if is_files_method { in_file(e.into()) } else { e.into() })?;
 
     if let Some(path) = &arguments.trace {
-        // Before the run, not after it.
-        std::fs::File::create(path)
+        // Before the run, not after it; what is there stays until there is a trace.
+        AtomicFile::create(path)
             .map_err(|why| format!("cannot write trace `{}`: {why}", path.display()))?;
+        if arguments.restart.as_ref() == Some(path) {
+            return Err(format!(
+                "`{}` is the checkpoint to restart from, and not to be the trace",
+                path.display()
+            )
+            .into());
+        }
     }
 
     let requests = Requests::listen()?;
-    if let (Some(out), None) = (&arguments.out, &arguments.restart)
-        && let Some(name) = last_checkpoint(out)
-    {
-        eprintln!(
-            "note: {} holds checkpoints of an earlier run, the last is {name}",
-            out.display()
-        );
+    if let (Some(out), None) = (&arguments.out, &arguments.restart) {
+        let names = left_behind(out);
+        if !names.is_empty() {
+            eprintln!(
+                "note: {} holds files of an earlier run, which are overwritten only where this one has the \
+                 same names: {names}",
+                out.display()
+            );
+        }
     }
     let bar = std::io::stderr().is_terminal().then(ProgressLine::start);
     let orders = Orders {
@@ -206,27 +249,34 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
         stops: Some(requests.stops),
         checkpoint_requests: Some(requests.checkpoints),
     };
-    let workers = orders.settings().workers;
     let points = prepared.points();
-    let plural = if workers == 1 { "" } else { "s" };
-    eprintln!("{}: {points} points, {}, {workers} worker{plural}", scene.name, arguments.schedule);
+    let workers = prepared.workers(&orders);
+    let counted = workers::counted(workers);
+    eprintln!("{}: {points} points, {}, {counted}", scene.name, arguments.schedule);
     let outcome = prepared.run(orders);
     if let Some(bar) = bar {
         bar.finish();
     }
-    let report = outcome?;
+    let report = outcome.map_err(told_once)?;
+    // All files before the first word, for who reads may stop listening.
+    let picture = match (&arguments.out, &report.picture) {
+        (Some(out), Some(picture)) => {
+            let path = out.join("final.png");
+            picture.save(&path)?;
+            Some(path)
+        }
+        _ => None,
+    };
     let mut stdout = std::io::stdout().lock();
     say(&mut stdout, &report)?;
-    if let (Some(out), Some(picture)) = (&arguments.out, &report.picture) {
-        let path = out.join("final.png");
-        picture.save(&path)?;
+    if let Some(path) = picture {
         writeln!(stdout, "picture of the final field: {}", path.display())?;
     }
     if arguments.json {
         let line = Line {
             scene: scene.name,
             method,
-            parameters: &parameters,
+            parameters: parameters.effective(&(scene.method(Some(method))?.parameters)()),
             precision,
             schedule: arguments.schedule.name(),
             workers,
@@ -249,6 +299,21 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     Ok(())
 }
 
+/// With three digits that mean something.
+fn percent(part: f64) -> String {
+    if part == 0.0 {
+        return "0 %".to_owned();
+    }
+    let percent = 100.0 * part;
+    let exponent = percent.abs().log10().floor();
+    if (-3.0..6.0).contains(&exponent) {
+        let decimals = (2.0 - exponent).max(0.0) as usize;
+        format!("{percent:+.decimals$} %")
+    } else {
+        format!("{percent:+.2e} %")
+    }
+}
+
 fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
     writeln!(
         out,
@@ -262,8 +327,7 @@ fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
     for (name, value) in &report.results {
         match report.errors.get(name) {
             Some(error) if error != value => {
-                let percent = 100.0 * error;
-                writeln!(out, "  {name} = {value:.6e} (relative error {percent:+.3} %)")?;
+                writeln!(out, "  {name} = {value:.6e} (relative error {})", percent(*error))?;
             }
             _ => writeln!(out, "  {name} = {value:.6e}")?,
         }
@@ -323,5 +387,16 @@ impl ProgressLine {
         drop(self.port);
         // It only draws; if it panicked there is nothing to save.
         let _ = self.thread.join();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn errors_have_digits_that_mean_something() {
+        let said = [-0.00000123, 0.0126, -4.0, 266.634, 1e-12, 0.0].map(percent);
+        assert_eq!(said, ["-1.23e-4 %", "+1.26 %", "-400 %", "+26663 %", "+1.00e-10 %", "0 %"]);
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use finegrain::scene::Precision;
 use serde::Deserialize;
+use toml::Spanned;
 
 use super::CommandError;
 
@@ -30,7 +31,7 @@ pub struct SceneFile {
     pub precision: Option<FilePrecision>,
     /// Parameters of the scene.
     #[serde(default)]
-    pub parameters: BTreeMap<String, toml::Value>,
+    pub parameters: BTreeMap<String, Spanned<toml::Value>>,
 }
 
 /// Scalar type, as files name it.
@@ -65,13 +66,15 @@ impl SceneFile {
             .map_err(|cause| format!("cannot read scene file `{}`: {cause}", path.display()))?;
         let file: Self = toml::from_str(&text)
             .map_err(|cause| format!("scene file `{}`: {cause}", path.display()))?;
-        for (name, value) in &file.parameters {
+        for (name, spanned) in &file.parameters {
+            let value = spanned.get_ref();
             if !matches!(
                 value,
                 toml::Value::String(_) | toml::Value::Integer(_) | toml::Value::Float(_)
             ) {
+                let line = 1 + text[..spanned.span().start].matches('\n').count();
                 return Err(format!(
-                    "scene file `{}`: parameter {name} = {value} must be a number or a string",
+                    "scene file `{}`, line {line}: parameter {name} = {value} must be a number or a string",
                     path.display()
                 )
                 .into());
@@ -86,6 +89,6 @@ impl SceneFile {
             toml::Value::String(text) => text.clone(),
             other => other.to_string(),
         };
-        self.parameters.iter().map(|(name, value)| (name.clone(), text(value))).collect()
+        self.parameters.iter().map(|(name, value)| (name.clone(), text(value.get_ref()))).collect()
     }
 }

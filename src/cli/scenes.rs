@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use clap::Args;
-use finegrain::scene::{SCENES, Scene};
+use finegrain::scene::{Method, SCENES, Scene};
 
 use super::CommandError;
 
@@ -12,12 +12,22 @@ use super::CommandError;
 pub struct ScenesArguments {
     /// A scene, to see its parameters with their defaults and ranges; all scenes, a line each, without.
     scene: Option<String>,
+    /// Only the parameters for this numerical method.
+    #[arg(long, requires = "scene")]
+    method: Option<String>,
 }
 
 /// Lists all scenes, or the parameters of one.
 pub fn scenes(arguments: &ScenesArguments, out: &mut impl Write) -> Result<(), CommandError> {
     match &arguments.scene {
-        Some(name) => describe(Scene::find(name)?, out)?,
+        Some(name) => {
+            let scene = Scene::find(name)?;
+            let methods = match arguments.method.as_deref() {
+                Some(name) => std::slice::from_ref(scene.method(Some(name))?),
+                None => scene.methods,
+            };
+            describe(scene, methods, out)?;
+        }
         None => {
             for scene in SCENES {
                 let methods: Vec<_> = scene.methods.iter().map(|method| method.name).collect();
@@ -29,14 +39,20 @@ pub fn scenes(arguments: &ScenesArguments, out: &mut impl Write) -> Result<(), C
     Ok(())
 }
 
-fn describe(scene: &Scene, out: &mut impl Write) -> std::io::Result<()> {
+fn describe(scene: &Scene, methods: &[Method], out: &mut impl Write) -> std::io::Result<()> {
     writeln!(out, "{}: {}", scene.name, scene.summary)?;
-    for method in scene.methods {
+    for method in methods {
         writeln!(out, "\n--method {}", method.name)?;
-        for parameter in (method.parameters)() {
+        let parameters = (method.parameters)();
+        for parameter in &parameters {
             let (name, default) = (parameter.name, parameter.default().to_string());
             writeln!(out, "  {name:20} {default:>18}  {}", parameter.help)?;
-            writeln!(out, "  {:39}  ({})", "", parameter.range())?;
+            let condition = parameter
+                .only_with
+                .filter(|(other, _)| parameters.iter().any(|parameter| parameter.name == *other))
+                .map(|(other, values)| format!("; only with {other} = {}", values.join(" or ")));
+            let condition = condition.unwrap_or_default();
+            writeln!(out, "  {:39}  ({}{condition})", "", parameter.range())?;
         }
     }
     Ok(())

@@ -14,8 +14,8 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Listens from now on, until the process ends. The first request to stop ends the run in order,
-    /// the second ends the process with exit code 130.
+    /// Listens from now on, until the process ends. The first request to stop ends the run in order, and does nothing
+    /// when its steps are done and the rest is being written; the second ends the process with exit code 130.
     ///
     /// # Errors
     /// If the system refuses.
@@ -24,10 +24,12 @@ impl Requests {
         let (checkpoint, checkpoints) = Port::unbounded("checkpoint");
         let mut asked = false;
         let on_stop = move || {
-            if asked || stop.post(()).is_err() {
+            if asked {
                 process::exit(130);
             }
             asked = true;
+            // Nobody asks when the steps are done.
+            let _ = stop.post(());
         };
         spawn(on_stop, checkpoint)?;
         Ok(Self { stops, checkpoints })

@@ -40,6 +40,8 @@ pub struct Field {
     content: Content,
     mark: Mark,
     window: Option<[[f64; 2]; 2]>,
+    /// Directions in which the window is one period.
+    periodic: [bool; 2],
     outlines: Vec<Outline>,
 }
 
@@ -75,6 +77,7 @@ impl Field {
             content,
             mark: Mark::default(),
             window: None,
+            periodic: [false; 2],
             outlines: Vec::new(),
         }
     }
@@ -113,6 +116,13 @@ impl Field {
     /// Shows space from `low` to `high`; by default, all points.
     pub fn window(mut self, low: [f64; 2], high: [f64; 2]) -> Self {
         self.window = Some([low, high]);
+        self
+    }
+
+    /// Directions in which space goes on beyond the window as at its other end: points near an end are drawn at the
+    /// other, too.
+    pub fn periodic(mut self, directions: [bool; 2]) -> Self {
+        self.periodic = directions;
         self
     }
 
@@ -238,14 +248,27 @@ impl Field {
         (frame, bottom.ceil().max(300.0))
     }
 
+    /// From a point to itself and its periodic images around the window.
+    fn shifts(&self) -> Vec<[f64; 2]> {
+        let [low, high] = self.window.unwrap_or_default();
+        let along = |a: usize| match self.periodic[a] {
+            true => vec![0.0, low[a] - high[a], high[a] - low[a]],
+            false => vec![0.0],
+        };
+        along(0).iter().flat_map(|&x| along(1).into_iter().map(move |y| [x, y])).collect()
+    }
+
     fn draw_content(&self, canvas: &mut Canvas, frame: &Frame, colour: impl Fn(f64) -> Colour) {
         match &self.content {
             Content::Points { points, diameter } => {
                 let [a, b] = [0.0, *diameter].map(|x| frame.place([x, 0.0])[0]);
                 let pixels = b - a;
+                let shifts = self.shifts();
                 let points: Vec<_> = points
                     .iter()
-                    .map(|&(position, value)| (frame.place(position), value))
+                    .flat_map(|&([x, y], value)| {
+                        shifts.iter().map(move |[dx, dy]| (frame.place([x + dx, y + dy]), value))
+                    })
                     .filter(|(centre, _)| frame.holds(*centre, pixels))
                     .collect();
                 match self.mark {

@@ -30,24 +30,28 @@ pub enum SceneError {
         /// What there is.
         known: String,
     },
-    /// The method does not compute with such numbers.
-    #[error("method {method:?} has no precision {}; it has {known}", precision.name())]
-    Precision {
+    /// The scene and method in which something else is wrong.
+    #[error("scene {scene:?}, --method {method}: {cause}")]
+    With {
+        /// The scene.
+        scene: &'static str,
         /// The method.
         method: &'static str,
+        /// What is wrong.
+        #[source]
+        cause: Box<SceneError>,
+    },
+    /// The method does not compute with such numbers.
+    #[error("there is no precision {}; there are {known}", precision.name())]
+    Precision {
         /// What was asked for.
         precision: Precision,
         /// What there is.
         known: &'static str,
     },
     /// The parameters were set for another method or scene.
-    #[error("these are not the parameters of scene {scene:?} for method {method:?}")]
-    Parameters {
-        /// The scene.
-        scene: &'static str,
-        /// The method.
-        method: &'static str,
-    },
+    #[error("these are not its parameters")]
+    Parameters,
     /// A parameter cannot be set.
     #[error(transparent)]
     Parameter(#[from] ParameterError),

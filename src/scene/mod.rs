@@ -76,7 +76,7 @@ impl Precision {
 pub struct Orders {
     /// How workers meet.
     pub schedule: Schedule,
-    /// Number of workers; all cores if `None`.
+    /// Number of workers; if `None`, see [`Prepared::workers`].
     pub workers: Option<usize>,
     /// End after so many steps.
     pub steps: Option<u64>,
@@ -106,17 +106,14 @@ pub struct Orders {
 const TRACED: usize = 200_000;
 
 impl Orders {
-    /// Settings of a simulation for these orders.
-    pub fn settings(&self) -> Settings {
-        let trace = if self.trace.is_some() { TRACED } else { 0 };
-        let settings = Settings { schedule: self.schedule, trace, ..Settings::default() };
-        Settings { workers: self.workers.unwrap_or(settings.workers), ..settings }
-    }
-
     /// A simulation of `model` for these orders.
-    fn simulation<D: Domain>(&self, model: Model<D>) -> Result<Simulation<D>, SceneError> {
-        let settings = self.settings();
-        let workers = settings.workers;
+    fn simulation<D: Domain>(
+        &self,
+        model: Model<D>,
+        workers: usize,
+    ) -> Result<Simulation<D>, SceneError> {
+        let trace = if self.trace.is_some() { TRACED } else { 0 };
+        let settings = Settings { schedule: self.schedule, workers, trace, ..Settings::default() };
         Simulation::new(model, settings).map_err(|cause| SceneError::Workers { workers, cause })
     }
 
@@ -157,6 +154,16 @@ impl Orders {
 pub trait Prepared {
     /// Number of points.
     fn points(&self) -> usize;
+
+    /// Fewest points that are worth a worker: with fewer, what workers wait for each other in every step takes longer
+    /// than what they save.
+    fn points_per_worker(&self) -> usize;
+
+    /// Number of workers that it runs with: what is ordered, or all cores, as far as there are points enough.
+    fn workers(&self, orders: &Orders) -> usize {
+        let worth = (self.points() / self.points_per_worker()).max(1);
+        orders.workers.unwrap_or_else(|| worth.min(Settings::default().workers))
+    }
 
     /// Runs it to the end.
     ///
@@ -392,8 +399,8 @@ impl Scene {
     pub fn set<'a>(
         &self,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
-    ) -> Result<Parameters, ParameterError> {
-        Parameters::new(self.name, &(self.methods[0].parameters)(), settings)
+    ) -> Result<Parameters, SceneError> {
+        self.set_for(None, settings)
     }
 
     /// Sets parameters of a method, the default one if `None`.
@@ -405,8 +412,27 @@ impl Scene {
         method: Option<&str>,
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Parameters, SceneError> {
-        let declared = (self.method(method)?.parameters)();
-        Ok(Parameters::new(self.name, &declared, settings)?)
+        let method = self.method(method)?;
+        Parameters::new(&(method.parameters)(), settings).map_err(|mut error| {
+            if let ParameterError::Unknown { name, elsewhere, .. } = &mut error {
+                *elsewhere = self.methods_with(name);
+            }
+            self.with(method, error.into())
+        })
+    }
+
+    /// The methods for which the scene has this parameter, in brackets; nothing if for none.
+    fn methods_with(&self, name: &str) -> String {
+        let has = |method: &&Method| (method.parameters)().iter().any(|p| p.name == name);
+        let names: Vec<_> = self.methods.iter().filter(has).map(|method| method.name).collect();
+        if names.is_empty() {
+            return String::new();
+        }
+        format!(" (there is one with {})", names.join(" and "))
+    }
+
+    fn with(&self, method: &Method, cause: SceneError) -> SceneError {
+        SceneError::With { scene: self.name, method: method.name, cause: Box::new(cause) }
     }
 
     /// Prepares it for a method, the default one if `None`.
@@ -423,17 +449,22 @@ impl Scene {
         let method = self.method(method)?;
         let mut declared: Vec<_> = (method.parameters)().iter().map(|p| p.name).collect();
         declared.sort_unstable();
-        if !parameters.iter().map(|(name, _)| name).eq(declared) {
-            return Err(SceneError::Parameters { scene: self.name, method: method.name });
-        }
-        (method.prepare)(parameters, precision)
+        let is_its = parameters.iter().map(|(name, _)| name).eq(declared);
+        let prepared = match is_its {
+            true => (method.prepare)(parameters, precision),
+            false => Err(SceneError::Parameters),
+        };
+        prepared.map_err(|cause| self.with(method, cause))
     }
 }
 
-/// Everything that is modelled, a line each, for checkpoints.
+/// Everything that decides the bits, a line each, for checkpoints; other versions of this program may
+/// compute the same things in another order.
 fn description(scene: &str, method: &str, parameters: &Parameters, precision: Precision) -> String {
-    let precision = precision.name();
-    let mut text = format!("scene = {scene}\nmethod = {method}\nprecision = {precision}\n");
+    let (version, precision) = (env!("CARGO_PKG_VERSION"), precision.name());
+    let mut text = format!(
+        "finegrain = {version}\nscene = {scene}\nmethod = {method}\nprecision = {precision}\n"
+    );
     for (name, value) in parameters.iter() {
         text += &format!("{name} = {value}\n");
     }

@@ -43,6 +43,8 @@ pub struct Parameter {
     pub unit: &'static str,
     /// What it means.
     pub help: &'static str,
+    /// Another parameter and the values of that with which alone this one has an effect.
+    pub only_with: Option<(&'static str, &'static [&'static str])>,
 }
 
 /// A parameter's value.
@@ -60,13 +62,13 @@ pub enum Value {
 /// Why a parameter could not be set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
-    /// The scene has no such parameter.
-    #[error("scene {scene:?} has no parameter {name:?}{}; it has {known}", did_you_mean(near))]
+    /// There is no such parameter.
+    #[error("there is no parameter {name:?}{elsewhere}{}; there are {known}", did_you_mean(near))]
     Unknown {
-        /// The scene.
-        scene: &'static str,
         /// What was given.
         name: String,
+        /// Where there is one, in brackets; empty if nowhere.
+        elsewhere: String,
         /// The known name that is nearest, if one is near.
         near: Option<String>,
         /// What there is.
@@ -93,7 +95,7 @@ impl Parameter {
         unit: &'static str,
         help: &'static str,
     ) -> Self {
-        Self { name, kind: Kind::Number { default, least, most }, unit, help }
+        Self { name, kind: Kind::Number { default, least, most }, unit, help, only_with: None }
     }
 
     /// A whole number with default and range.
@@ -103,7 +105,7 @@ impl Parameter {
         [least, most]: [u32; 2],
         help: &'static str,
     ) -> Self {
-        Self { name, kind: Kind::Integer { default, least, most }, unit: "", help }
+        Self { name, kind: Kind::Integer { default, least, most }, unit: "", help, only_with: None }
     }
 
     /// A choice among names, the first being the default.
@@ -112,7 +114,15 @@ impl Parameter {
         choices: &'static [&'static str],
         help: &'static str,
     ) -> Self {
-        Self { name, kind: Kind::Choice { default: choices[0], names: choices }, unit: "", help }
+        let kind = Kind::Choice { default: choices[0], names: choices };
+        Self { name, kind, unit: "", help, only_with: None }
+    }
+
+    /// The same, but without effect where another parameter of the scene has none of these values.
+    #[must_use]
+    pub const fn only_with(mut self, other: &'static str, values: &'static [&'static str]) -> Self {
+        self.only_with = Some((other, values));
+        self
     }
 
     /// The same with another default number.
@@ -168,6 +178,7 @@ impl Parameter {
             Kind::Number { least, most, .. } => {
                 format!("between {least:?} and {most:?} {}", self.unit).trim_end().to_owned()
             }
+            Kind::Integer { least, most, .. } if least == most => format!("{least} only"),
             Kind::Integer { least, most, .. } => {
                 format!("a whole number between {least} and {most}")
             }
@@ -208,7 +219,6 @@ impl Parameters {
     /// # Errors
     /// If a name is unknown or a value not valid; the message says what is.
     pub fn new<'a>(
-        scene: &'static str,
         declared: &[Parameter],
         settings: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Self, ParameterError> {
@@ -217,12 +227,8 @@ impl Parameters {
             let parameter = declared.iter().find(|p| p.name == name).ok_or_else(|| {
                 let known: Vec<_> = declared.iter().map(|p| p.name).collect();
                 let near = nearest(name, &known);
-                ParameterError::Unknown {
-                    scene,
-                    name: name.to_owned(),
-                    near,
-                    known: known.join(", "),
-                }
+                let (name, known) = (name.to_owned(), known.join(", "));
+                ParameterError::Unknown { name, elsewhere: String::new(), near, known }
             })?;
             values.insert(parameter.name, parameter.parse(text)?);
         }
@@ -250,6 +256,20 @@ impl Parameters {
             Some(Value::Choice(text)) => text,
             other => panic!("parameter {name:?} is {other:?}, not a choice"),
         }
+    }
+
+    /// Those of the `declared` that have an effect with these values.
+    pub fn effective(&self, declared: &[Parameter]) -> BTreeMap<&'static str, &Value> {
+        let has_effect = |parameter: &&Parameter| {
+            parameter.only_with.is_none_or(|(other, values)| {
+                let value = self.0.get(other).map(Value::to_string);
+                value.is_none_or(|value| values.contains(&value.as_str()))
+            })
+        };
+        let effective = declared.iter().filter(has_effect);
+        effective
+            .filter_map(|parameter| Some((parameter.name, self.0.get(parameter.name)?)))
+            .collect()
     }
 
     /// Names and values, by name.
@@ -284,29 +304,31 @@ impl std::fmt::Display for Value {
 mod tests {
     use super::*;
 
-    const DECLARED: [Parameter; 2] = [
+    const DECLARED: [Parameter; 3] = [
         Parameter::integer("resolution", 50, [8, 2000], "points across"),
         Parameter::choice("kernel", &["gaussian", "quintic-spline"], "smoothing kernel"),
+        Parameter::integer("dim", 2, [2, 2], "dimensions"),
     ];
 
     #[test]
     fn settings_go_over_defaults() {
-        let p = Parameters::new("x", &DECLARED, [("kernel", "quintic-spline")]).unwrap();
+        let p = Parameters::new(&DECLARED, [("kernel", "quintic-spline")]).unwrap();
         assert_eq!(p.number("resolution"), 50.0);
         assert_eq!(p.choice("kernel"), "quintic-spline");
     }
 
     #[test]
     fn what_is_wrong_is_named_with_what_would_be_right() {
-        let said = |setting| Parameters::new("x", &DECLARED, [setting]).unwrap_err().to_string();
+        let said = |setting| Parameters::new(&DECLARED, [setting]).unwrap_err().to_string();
         assert_eq!(
             said(("resolution", "7")),
             "resolution = 7 is not valid: it must be a whole number between 8 and 2000"
         );
         assert!(said(("resolution", "NaN")).contains("resolution = NaN"));
         assert!(said(("resolution", "24.6")).contains("a whole number"));
+        assert_eq!(said(("dim", "3")), "dim = 3 is not valid: it must be 2 only");
         assert!(said(("kernel", "cubic")).contains("one of gaussian, quintic-spline"));
-        assert!(said(("resolutoin", "9")).contains("it has resolution, kernel"));
+        assert!(said(("resolutoin", "9")).contains("there are resolution, kernel, dim"));
         assert!(said(("resolutoin", "9")).contains("did you mean \"resolution\"?"));
         assert!(!said(("width", "9")).contains("did you mean"));
     }

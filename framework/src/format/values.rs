@@ -95,11 +95,11 @@ impl Values<'_> {
         self.len() == 0
     }
 
-    /// Place of the first number that is infinite or none.
-    pub fn first_not_finite(&self) -> Option<usize> {
+    /// Place of the first number that is none, infinite or farther than `most` from zero.
+    pub fn first_beyond(&self, most: f64) -> Option<usize> {
         match self {
-            Self::F32(values) => values.iter().position(|x| !x.is_finite()),
-            Self::F64(values) => values.iter().position(|x| !x.is_finite()),
+            Self::F32(values) => values.iter().position(|&x| !is_within(f64::from(x), most)),
+            Self::F64(values) => values.iter().position(|&x| !is_within(x, most)),
             Self::U8(_) | Self::U32(_) | Self::U64(_) => None,
         }
     }
@@ -117,6 +117,10 @@ impl Values<'_> {
             Self::U64(values) => write_tuples(out, &[values], 1),
         }
     }
+}
+
+fn is_within(x: f64, most: f64) -> bool {
+    x.abs() <= most.min(f64::MAX)
 }
 
 impl<'a, T: Element> From<&'a [T]> for Values<'a> {

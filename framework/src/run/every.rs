@@ -48,6 +48,12 @@ impl Timetable {
         self.done = Some(self.every.times(clock.step(), clock.time()));
     }
 
+    /// All that was due before this step has been done; what is due at this very step is to be done again.
+    pub fn skip_before(&mut self, clock: &Clock) {
+        let last = clock.step().checked_sub(1);
+        self.done = last.map(|step| self.every.times(step, clock.time_at(step)));
+    }
+
     /// Whether it is due now; it is then taken to be done.
     pub fn take(&mut self, clock: &Clock) -> bool {
         let times = self.every.times(clock.step(), clock.time());
@@ -110,6 +116,20 @@ mod tests {
     #[test]
     fn every_so_many_steps() {
         assert_eq!(walk(Every::Steps(3), 0.1, 10), [0, 3, 6, 9]);
+    }
+
+    #[test]
+    fn what_was_due_at_a_step_is_due_there_again() {
+        for every in [Every::Steps(3), Every::Time(0.3)] {
+            let due = walk(every, 0.1, 10);
+            for step in 0..=10 {
+                let mut clock = Clock::new(0.1);
+                clock.advance(step);
+                let mut table = Timetable::new(every);
+                table.skip_before(&clock);
+                assert_eq!(table.take(&clock), due.contains(&step), "{every:?}, step {step}");
+            }
+        }
     }
 
     #[test]

@@ -27,10 +27,13 @@ impl<D: Domain> Run<D> {
         let clock = self.simulation.clock();
         let monitors = self.monitors.iter_mut().map(|monitor| &mut monitor.timetable);
         let dumps = self.dumps.iter_mut().map(|dump| &mut dump.timetable);
-        let criteria = self.criteria.iter_mut().map(|criterion| &mut criterion.timetable);
         let checkpoints = self.checkpoints.iter_mut().map(|checkpoints| &mut checkpoints.timetable);
-        for timetable in monitors.chain(dumps).chain(criteria).chain(checkpoints) {
+        for timetable in monitors.chain(dumps).chain(checkpoints) {
             timetable.skip(clock);
+        }
+        // Asked again here, a criterion that was met here ends the run again.
+        for criterion in &mut self.criteria {
+            criterion.timetable.skip_before(clock);
         }
         // It was written before it could know of itself.
         if !record.checkpoints.contains(&clock.step()) {

@@ -189,31 +189,34 @@ impl<'a, D: Domain> Own<'a, D> {
         Own { place: self.place, borrows: Borrows::default() }
     }
 
-    /// Whether all own values of a column are finite; integers always are.
-    pub(crate) fn is_finite(&self, id: ColumnId) -> bool {
-        fn all_finite<T: num_traits::Float + Element, D: Domain>(
+    /// Whether all own values of a column are finite and within `most` of zero; integers always are.
+    pub(crate) fn is_valid(&self, id: ColumnId, most: f64) -> bool {
+        fn all_valid<T: num_traits::Float + Element, D: Domain>(
             own: &Own<'_, D>,
             id: ColumnId,
+            most: f64,
         ) -> bool {
             assert!(!own.borrows.exclusive.contains(id), "column {} is being written", id.0);
             // SAFETY: as in `Own::part`; what is read here does not outlive this borrow of `own`.
             let part = unsafe { Part::new(own.place.base::<T>(id), own.place.spans(id)) };
-            // x * 0 is 0 for finite x and NaN otherwise; eight sums, so that it vectorises.
+            let most = T::from(most).map_or(T::max_value(), |most| most.min(T::max_value()));
             (0..own.place.spans(id).len()).all(|k| {
-                let values = part.span(k);
-                let (chunks, rest) = values.as_chunks::<8>();
-                let mut sums = [T::zero(); 8];
+                let (chunks, rest) = part.span(k).as_chunks::<8>();
+                // x * 0 is 0 for finite x and NaN otherwise; eight of all, so that it vectorises.
+                let (mut sums, mut largest) = ([T::zero(); 8], [T::zero(); 8]);
                 for chunk in chunks {
-                    for (sum, &x) in sums.iter_mut().zip(chunk) {
+                    for ((sum, largest), &x) in sums.iter_mut().zip(&mut largest).zip(chunk) {
                         *sum = *sum + x * T::zero();
+                        *largest = if x.abs() > *largest { x.abs() } else { *largest };
                     }
                 }
-                sums.iter().chain(rest).all(|x| x.is_finite())
+                let is_within = |x: &T| x.abs() <= most;
+                sums.iter().chain(&largest).chain(rest).all(is_within)
             })
         }
         match self.place.slots[id.0 as usize].kind {
-            ElementKind::F32 => all_finite::<f32, D>(self, id),
-            ElementKind::F64 => all_finite::<f64, D>(self, id),
+            ElementKind::F32 => all_valid::<f32, D>(self, id, most),
+            ElementKind::F64 => all_valid::<f64, D>(self, id, most),
             _ => true,
         }
     }

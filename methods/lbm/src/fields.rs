@@ -1,9 +1,15 @@
 //! The columns of a model.
 
-use finegrain_framework::{Columns, Rate, Real, State};
+use finegrain_framework::{Columns, Limit, Rate, Real, State};
 
 use crate::lattice::LatticeKind;
 use crate::physics::Streaming;
+
+/// What all sites' populations add up to is about 1.
+static UNSTABLE: Limit = Limit {
+    most: 1.0,
+    beyond: "the flow is unstable; choose another collision, more points or more viscosity",
+};
 
 /// Columns of a model. A plane has no `velocity_z`.
 #[derive(Clone, Debug)]
@@ -33,8 +39,10 @@ impl<T: Real> Fields<T> {
             Streaming::TwoGrids => ("population", all.clone()),
             Streaming::InPlace => ("in_place", 0..0),
         };
+        let populations: Vec<_> = all.map(|q| columns.state(&format!("{name}_{q}"))).collect();
+        populations.iter().for_each(|&population| columns.limit(population, &UNSTABLE));
         Self {
-            populations: all.map(|q| columns.state(&format!("{name}_{q}"))).collect(),
+            populations,
             next: next.map(|q| columns.rate(&format!("next_{q}"))).collect(),
             solid: columns.state("solid"),
             pressure: columns.rate("pressure"),

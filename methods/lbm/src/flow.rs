@@ -162,7 +162,7 @@ pub(crate) fn weighted<L: Lattice<Q>, V: Pack, const Q: usize, const N: usize>(
     all
 }
 
-/// `c . v` of the first of a pair of velocities, the last component of which that is not zero is one.
+/// `c . v` of the first of a pair of velocities, the first component of which that is not zero is one.
 #[inline(always)]
 pub(crate) fn along<V: Pack>(c: [i32; 3], v: &[V; 3]) -> V {
     let part = |sum: V, a: usize| match c[a] {
@@ -171,9 +171,9 @@ pub(crate) fn along<V: Pack>(c: [i32; 3], v: &[V; 3]) -> V {
         _ => sum,
     };
     match c {
-        [_, _, 1] => part(part(v[2], 1), 0),
-        [_, 1, _] => part(v[1], 0),
-        _ => v[0],
+        [1, _, _] => part(part(v[0], 1), 2),
+        [_, 1, _] => part(v[1], 2),
+        _ => v[2],
     }
 }
 

@@ -16,11 +16,11 @@ use finegrain_framework::space::Grid;
 use finegrain_framework::{ColumnId, Fault, Handle, Moment, Own, Real, State, UpdateStage};
 
 use crate::around::wrap;
-use crate::kernel::{Collider, Varying};
+use crate::kernel::Slots;
 use crate::lattice::Lattice;
 use crate::mesh::Mesh;
-use crate::row::{Group, Local, Scratch, none};
-use crate::sites::{Sites, line};
+use crate::row::{Group, Local, Scratch};
+use crate::sites::Sites;
 
 /// Where the population of velocity `q` is that leaves a site, as seen from there.
 pub(crate) const fn kept(c: [i32; 3], q: usize) -> [i32; 3] {
@@ -77,7 +77,6 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
         let time = moment.time + moment.dt;
         let mut columns = own.rows_of_mut(self.slots);
         let mut group: [Group<T>; Q] = [[T::zero(); MOST_LANES]; Q];
-        let mut copies: [Lines<T>; Q] = [[T::zero(); 2 * MOST_LANES]; Q];
         for (j, k) in own.sub_domain().rows() {
             let number = k * ny + j;
             let (runs, singles) = (sites.runs(number), sites.singles(number));
@@ -87,24 +86,10 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
             self.local.accelerate(scratch, nx, (j, k), time);
             let mut rows = columns.row(j, k);
             for run in runs {
-                let ([start, end], ends) = run.without_ends::<T>(nx);
-                if start < end {
-                    let mut slots = none::<T, Q>();
-                    for (q, row) in rows.iter_mut().enumerate() {
-                        let first = (start as isize + along::<L, Q>(q)) as usize;
-                        slots[q] = &mut row[first..first + end - start];
-                    }
-                    collider.exchange(slots, scratch.varying(start, end));
-                }
-                if !ends.is_empty() {
-                    around_the_ends::<T, L, Q>(
-                        &**collider,
-                        &mut rows,
-                        &ends,
-                        scratch.varying(0, nx),
-                        &mut copies,
-                    );
-                }
+                let run = run.start as usize..run.end as usize;
+                let varying = scratch.varying(run.start, run.end);
+                let ahead = const { &ahead(L::VELOCITIES) };
+                collider.exchange(Slots { rows: &mut rows, sites: run, ahead }, varying);
             }
             for singles in singles.chunks(MOST_LANES) {
                 let place = |x: u32, q: usize| wrap(x as i32 + found(L::VELOCITIES[q], q)[0], nx);
@@ -127,79 +112,16 @@ impl<T: Real, L: Lattice<Q>, const Q: usize> UpdateStage<Grid> for InPlace<T, L,
     }
 }
 
-/// How far ahead along x a site finds what arrives with velocity `q`.
-const fn along<L: Lattice<Q>, const Q: usize>(q: usize) -> isize {
-    found(L::VELOCITIES[q], q)[0] as isize
-}
-
-/// Collides lines of sites at the ends of a row, some of whose slots are at its other end: all at once, in
-/// `copies`, because every collision has to be called. Acceleration is that of the row.
-fn around_the_ends<T: Real, L: Lattice<Q>, const Q: usize>(
-    collider: &dyn Collider<T, Q>,
-    rows: &mut [&mut [T]; Q],
-    ends: &[usize],
-    varying: Varying<'_, T>,
-    copies: &mut [Lines<T>; Q],
-) {
-    let (line, count) = (line::<T>(), ends.len() * line::<T>());
-    for (q, (copy, row)) in copies.iter_mut().zip(&*rows).enumerate() {
-        for (into, &x) in copy.chunks_exact_mut(line).zip(ends) {
-            take_line(row, x, along::<L, Q>(q), into);
-        }
+/// How far ahead along x a site finds what arrives with each velocity: at itself or the next one, as the first of
+/// a pair of velocities never goes back.
+const fn ahead<const Q: usize>(velocities: [[i32; 3]; Q]) -> [usize; Q] {
+    let mut ahead = [0; Q];
+    let mut q = 0;
+    while q < Q {
+        ahead[q] = found(velocities[q], q)[0] as usize;
+        q += 1;
     }
-    let mut acceleration: [Lines<T>; 3] = [[T::zero(); 2 * MOST_LANES]; 3];
-    let varying = varying.map(|rows| {
-        for (copy, row) in acceleration.iter_mut().zip(rows) {
-            for (into, &x) in copy.chunks_exact_mut(line).zip(ends) {
-                into.copy_from_slice(&row[x..x + line]);
-            }
-        }
-        acceleration.each_ref().map(|a| &a[..count])
-    });
-    collider.exchange(copies.each_mut().map(|copy| &mut copy[..count]), varying);
-    for (q, (copy, row)) in copies.iter().zip(rows).enumerate() {
-        for (from, &x) in copy.chunks_exact(line).zip(ends) {
-            give_line(from, x, along::<L, Q>(q), row);
-        }
-    }
-}
-
-/// Two lines of sites.
-type Lines<T> = [T; 2 * MOST_LANES];
-
-/// Copies the slots of the line of sites that begins at `x`, `by` sites away, around the ends of the row.
-#[inline(always)]
-fn take_line<T: Copy>(row: &[T], x: usize, by: isize, into: &mut [T]) {
-    // Known when this is compiled, so that copies of lines are a few instructions.
-    let (n, most) = (row.len(), line::<T>() - 1);
-    match x.checked_add_signed(by) {
-        None => {
-            into[0] = row[n - 1];
-            into[1..=most].copy_from_slice(&row[..most]);
-        }
-        Some(first) if first + most == n => {
-            into[..most].copy_from_slice(&row[n - most..]);
-            into[most] = row[0];
-        }
-        Some(first) => into[..=most].copy_from_slice(&row[first..=first + most]),
-    }
-}
-
-/// Copies them back.
-#[inline(always)]
-fn give_line<T: Copy>(from: &[T], x: usize, by: isize, row: &mut [T]) {
-    let (n, most) = (row.len(), line::<T>() - 1);
-    match x.checked_add_signed(by) {
-        None => {
-            row[n - 1] = from[0];
-            row[..most].copy_from_slice(&from[1..=most]);
-        }
-        Some(first) if first + most == n => {
-            row[n - most..].copy_from_slice(&from[..most]);
-            row[0] = from[most];
-        }
-        Some(first) => row[first..=first + most].copy_from_slice(&from[..=most]),
-    }
+    ahead
 }
 
 /// The slots of a pair of velocities at one place, where bodies turn back half-way what the one or the other

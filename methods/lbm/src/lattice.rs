@@ -76,10 +76,11 @@ lattice!(
 const fn velocities<const Q: usize>(dims: usize, most: i32) -> [[i32; 3]; Q] {
     let mut all = [[0; 3]; Q];
     let mut count = 1;
-    // Those that come after rest when x runs fastest; their opposites come before it.
+    // Those that come after rest when x runs slowest, so that none of them goes back in x; their opposites
+    // come before it.
     let mut code = 14;
     while code < 27 {
-        let c = [code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1];
+        let c = [code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1];
         if square(c) <= most && (dims == 3 || c[2] == 0) {
             all[count] = c;
             all[count + 1] = [-c[0], -c[1], -c[2]];

@@ -7,7 +7,7 @@ use finegrain_framework::pack::MOST_LANES;
 
 use crate::acceleration::Acceleration;
 use crate::around::wrap;
-use crate::kernel::{Collider, Varying};
+use crate::kernel::{Collider, Slots, Varying};
 use crate::lattice::Lattice;
 use crate::opening::{Edge, Openings};
 use crate::sites::{Single, Sites, line};
@@ -106,7 +106,8 @@ impl<T: Real, const Q: usize> Local<T, Q> {
             }
         }
         let varying = varies.then(|| acceleration.each_ref().map(|a| &a[..count]));
-        self.collider.exchange(arrived.each_mut().map(|f| &mut f[..count]), varying);
+        let mut rows = arrived.each_mut().map(|f| &mut f[..count]);
+        self.collider.exchange(Slots::of_group(&mut rows), varying);
     }
 }
 

@@ -1,6 +1,8 @@
 //! What each row of sites consists of: runs of sites that only stream and collide, and single sites
 //! that need more, with their links.
 
+use std::ops::Range;
+
 use finegrain_framework::Real;
 use finegrain_framework::shape::Shape;
 
@@ -42,38 +44,6 @@ impl Run {
         let first = if start == 0 { line::<T>() } else { start };
         let last = if end == nx { first.max(end - line::<T>()) } else { end };
         [[first, last], [last, end], [start, first]].into_iter().filter(|[start, end]| start < end)
-    }
-
-    /// The run without lines at the ends of their row of `nx` sites, and these.
-    pub fn without_ends<T>(self, nx: usize) -> ([usize; 2], Ends) {
-        let (start, end) = (self.start as usize, self.end as usize);
-        let mut ends = Ends { lines: [0; 2], count: 0 };
-        let mut inner = [start, end];
-        if start == 0 {
-            inner[0] = line::<T>();
-            ends.count = 1;
-        }
-        if end == nx && inner[0] < end {
-            inner[1] = end - line::<T>();
-            ends.lines[ends.count] = inner[1];
-            ends.count += 1;
-        }
-        (inner, ends)
-    }
-}
-
-/// Lines of sites at the ends of a row: where they begin, none to two.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Ends {
-    lines: [usize; 2],
-    count: usize,
-}
-
-impl std::ops::Deref for Ends {
-    type Target = [usize];
-
-    fn deref(&self) -> &[usize] {
-        &self.lines[..self.count]
     }
 }
 
@@ -208,7 +178,7 @@ impl<T: Real> Sites<T> {
 
     /// Ends a run, in the row of which the first site has number `row`; sites before and after its whole
     /// lines become single ones.
-    fn close(&mut self, run: &mut std::ops::Range<usize>, row: usize) {
+    fn close(&mut self, run: &mut Range<usize>, row: usize) {
         let start = (row + run.start).next_multiple_of(line::<T>()) - row;
         let lines = run.end.saturating_sub(start) / line::<T>();
         let whole = if lines > 0 { start..start + lines * line::<T>() } else { run.end..run.end };

@@ -7,6 +7,7 @@ use crate::acceleration::Acceleration;
 use crate::around::wrap;
 use crate::error::LbmError;
 use crate::in_place;
+use crate::kernel::Slots;
 use crate::lattice::{Lattice, opposite};
 use crate::physics::{Fluid, Streaming};
 use crate::relaxation::Relaxation;
@@ -71,7 +72,8 @@ impl Start {
                 }
             }
             let acceleration = Some(here.each_ref().map(|a| &a[..]));
-            local.collider.exchange(sites.each_mut().map(|f| &mut f[..]), acceleration);
+            let mut rows = sites.each_mut().map(|f| &mut f[..]);
+            local.collider.exchange(Slots::of_group(&mut rows), acceleration);
             for q in 0..Q {
                 let kept = match streaming {
                     Streaming::TwoGrids => [0; 3],

@@ -73,7 +73,7 @@ const fn cylinder(name: &'static str, until: f64, settings: Settings) -> HardCas
 }
 
 /// All run at a Mach number of 0.1 of the speed of layers, lid and vortices; this is that of the end.
-const SPEED: Sign = Sign { result: "mach", least: 0.0, most: 0.18, symptom: "too fast" };
+const SPEED: Sign = Sign { result: "mach_reached", least: 0.0, most: 0.18, symptom: "too fast" };
 
 /// At any time. Flow that overtakes its own sound is none that these lattices can have: their equilibrium is an
 /// expansion for small Mach numbers (Qian, d'Humieres & Lallemand 1992, Europhys. Lett. 17).

@@ -10,7 +10,7 @@ pub const CASES: [HardCase; 8] = [
         time_step: Some("courant"),
         scene: "taylor-green",
         settings: &[("reynolds", "1000"), ("disturbance", "0")],
-        until: 5.0,
+        until: UNSTABLE_AFTER,
         variants: VORTICES,
         signs: &[WRONG_VELOCITY, CLUMPING],
     },
@@ -20,7 +20,7 @@ pub const CASES: [HardCase; 8] = [
         time_step: Some("courant"),
         scene: "taylor-green",
         settings: &[("reynolds", "10000"), ("disturbance", "0")],
-        until: 5.0,
+        until: UNSTABLE_AFTER,
         variants: VORTICES,
         signs: &[WRONG_VELOCITY, CLUMPING],
     },
@@ -110,6 +110,9 @@ pub const CASES: [HardCase; 8] = [
     },
 ];
 
+/// Later the velocity says more of the vortices than of the method: a disturbance of 0.01 % of their speed
+/// is 1.5 times as large by now and 14 times at 5 (Re = 10,000, pseudo-spectral on 64^2).
+const UNSTABLE_AFTER: f64 = 2.0;
 const CLUMPING: Sign =
     Sign { result: "closest_pair", least: 0.25, most: f64::INFINITY, symptom: "clumping" };
 const WRONG_VELOCITY: Sign =

@@ -8,13 +8,13 @@ use finegrain_framework::space::Grid;
 use crate::scene::parameter::Parameter;
 use crate::scene::riemann::Gas;
 
-/// The Courant number itself: positive stays positive up to 1/2.
+/// The Courant number itself.
 pub(super) const COURANT: Parameter = Parameter::number(
     "courant",
     0.4,
-    [1e-4, 100.0],
+    [1e-4, finegrain_fd::Gas::LARGEST_COURANT],
     "",
-    "Courant number of the fastest wave; at most 0.5 keeps density and pressure positive",
+    "Courant number of the fastest wave; more would not keep density and pressure positive",
 );
 
 /// A gas that moves along x.

@@ -8,7 +8,7 @@ use finegrain_framework::{Integrator, Simulation};
 use super::{FdScene, Flow};
 use crate::figure::Axis;
 use crate::scene::heat::{self, DIFFUSIVITY, HeatBox, Heating, TIME};
-use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::parameter::{Parameter, ParameterError, Parameters};
 use crate::scene::report::Picture;
 use crate::scene::{Precision, Report, SceneError};
 
@@ -24,7 +24,7 @@ const COURANT: Parameter = Parameter::number(
     0.8,
     [1e-4, 1e6],
     "",
-    "time step over the longest that is stable; of implicit steps, over that of euler",
+    "time step over the longest that is stable, at most 1; of implicit steps, over that of euler",
 );
 
 /// All parameters.
@@ -53,17 +53,29 @@ fn build<T: Compiled>(
     let integrator = integrator.unwrap_or(TimeStepping::Explicit(Integrator::Rk4));
     let equation =
         Heat { diffusivity: DIFFUSIVITY, order: super::order(parameters), integrator, boundary };
+    let courant = parameters.number("courant");
     let limited = match integrator {
+        TimeStepping::Explicit(_) if courant > 1.0 => {
+            return Err(past_stability(courant, parameters.choice("integrator")).into());
+        }
         TimeStepping::Explicit(_) => equation.clone(),
         TimeStepping::Implicit(_) => {
             Heat { integrator: Integrator::Euler.into(), ..equation.clone() }
         }
     };
-    let longest = parameters.number("courant") * limited.time_step_limit(&mesh)?;
+    let longest = courant * limited.time_step_limit(&mesh)?;
     let start = move |x| scene.temperature(x, 0.0);
     let fd = equation.model(&mesh, super::dividing(TIME, longest), &start)?;
     let description = super::description("heat", parameters, precision);
     Ok(FdScene { fd, flow: Box::new(Spreading { scene }), description })
+}
+
+fn past_stability(courant: f64, integrator: &str) -> ParameterError {
+    ParameterError::Invalid {
+        name: "courant",
+        value: courant.to_string(),
+        range: format!("at most 1 with integrator = {integrator}; more takes an implicit one"),
+    }
 }
 
 struct Spreading {

@@ -8,16 +8,18 @@ use finegrain_framework::{Rate, Simulation, Whole};
 
 use super::Flow;
 use crate::figure::{Axis, Field};
-use crate::scene::parameter::{Parameter, Parameters};
+use crate::scene::parameter::{Kind, Parameter, Parameters};
 use crate::scene::report::Picture;
 use crate::scene::{Report, cubic};
 
 /// Of operators in periodic boxes.
-pub const ORDER: Parameter = Parameter::choice(
-    "order",
-    &["4", "2"],
-    "of the operators: Morinishi et al. (1998), Harlow & Welch (1965)",
-);
+pub const ORDER: Parameter = Parameter {
+    name: "order",
+    kind: Kind::Choice { default: "4", names: &["2", "4"] },
+    unit: "",
+    help: "of the operators: Harlow & Welch (1965), Morinishi et al. (1998)",
+    only_with: None,
+};
 
 /// A fluid without forces between walls at rest, if there are any, for the parameters of time steps and, in periodic
 /// boxes, [`ORDER`].

@@ -11,6 +11,7 @@ use finegrain_framework::{Real, Simulation, VectorField};
 use finegrain_sph::{Fields, Fluid, Fringe, Packing, Physics, Sph, Start, measure};
 
 use super::{Flow, SphScene, profile};
+use crate::figure::Outline;
 use crate::scene::channel_cylinder::{
     self, CENTRE, ChannelCylinder, DENSITY, DIAMETER, HEIGHT, LENGTH, Loads, VISCOSITY,
 };
@@ -141,5 +142,9 @@ impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
 
     fn spacing(&self) -> f64 {
         self.spacing
+    }
+
+    fn outlines(&self) -> Vec<Outline> {
+        vec![Outline::Circle { centre: CENTRE, radius: 0.5 * DIAMETER }]
     }
 }

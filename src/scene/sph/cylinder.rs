@@ -16,6 +16,7 @@ use finegrain_sph::packing::Lattice;
 use finegrain_sph::{Fields, Fluid, Packing, Physics, Sph, SphError, Start, WallVelocity, measure};
 
 use super::{Flow, SphScene, profile};
+use crate::figure::Outline;
 use crate::scene::cylinder::{self, Cylinder, DENSITY, SIDE};
 use crate::scene::parameter::{Parameter, ParameterError, Parameters};
 use crate::scene::{Precision, Report, SceneError};
@@ -227,5 +228,11 @@ impl<T: Real, P: Real> Flow<T, P> for CylinderFlow {
 
     fn spacing(&self) -> f64 {
         SIDE / self.scene.resolution
+    }
+
+    fn outlines(&self) -> Vec<Outline> {
+        let [x, y] = self.sides;
+        let radius = self.scene.radius([x, y, 0.0]);
+        vec![Outline::Circle { centre: [0.5 * x, 0.5 * y], radius }]
     }
 }

@@ -48,7 +48,7 @@ use finegrain_sph::{
 use super::parameter::{Parameter, Parameters};
 use super::report::Picture;
 use super::{Orders, Prepared, Report, SceneError};
-use crate::figure::{Axis, Field};
+use crate::figure::{Axis, Field, Outline};
 
 /// Parameters of the discretisation that scenes of all liquids share.
 const LIQUID_PARAMETERS: [Parameter; 8] = [
@@ -71,7 +71,13 @@ const LIQUID_PARAMETERS: [Parameter; 8] = [
         &["leapfrog", "symplectic-euler", "rk2", "ssp-rk3", "rk4", "euler"],
         "how time is stepped",
     ),
-    Parameter::number("courant", 1.0, [1e-3, 10.0], "", "fraction of the time step limits"),
+    Parameter::number(
+        "courant",
+        1.0,
+        [1e-3, 10.0],
+        "",
+        "time step over the limits of Morris et al. (1997); with more than 1 a flow may blow up",
+    ),
     Parameter::number("mach", 0.1, [1e-4, 0.5], "", "largest speed over sound speed, about"),
     Parameter::choice(
         "pressure_form",
@@ -140,8 +146,9 @@ const PARAMETERS: [Parameter; 6] = [
         0.5,
         [0.0, 10.0],
         "",
-        "diffusivity of the pressure in units of h c / 8, with edac",
-    ),
+        "diffusivity of the pressure in units of h c / 8",
+    )
+    .only_with("pressure", &["edac"]),
     Parameter::number(
         "transport",
         0.0,
@@ -202,8 +209,9 @@ const WALL_PARAMETERS: [Parameter; 3] = [
         3.0,
         [1.0, 100.0],
         "",
-        "largest extrapolation of the velocity into bodies, with a linear profile",
-    ),
+        "largest extrapolation of the velocity into bodies",
+    )
+    .only_with("wall_velocity", &["linear"]),
 ];
 
 /// Choices of flows around and between bodies: particles kept even by a transport velocity, pressure by
@@ -289,9 +297,15 @@ trait Flow<T: Real, P: Real> {
     /// Spacing of the particles, m.
     fn spacing(&self) -> f64;
 
+    /// Outlines of bodies in the plane of the picture.
+    fn outlines(&self) -> Vec<Outline> {
+        Vec::new()
+    }
+
     /// The picture of the end: by default of the speed.
     fn picture(&self, simulation: &Simulation<Cells<P>>, fields: &Fields<T, P>) -> Picture {
-        picture(simulation, fields, self.title(), self.spacing()).into()
+        let field = picture(simulation, fields, self.title(), self.spacing());
+        self.outlines().into_iter().fold(field, Field::outline).into()
     }
 }
 
@@ -308,11 +322,17 @@ impl<T: Real, P: Real> Prepared for SphScene<T, P> {
         self.sph.model.columns.points()
     }
 
+    /// Two sub-domains: a particle takes some thirty times as long as a site of a lattice.
+    fn points_per_worker(&self) -> usize {
+        500
+    }
+
     fn run(self: Box<Self>, orders: Orders) -> Result<Report, SceneError> {
+        let workers = self.workers(&orders);
         let Self { sph, flow, description } = *self;
         let Sph { model, fields, particle_mass } = sph;
         let points = model.columns.points();
-        let (simulation, trace) = (orders.simulation(model)?, orders.trace.clone());
+        let (simulation, trace) = (orders.simulation(model, workers)?, orders.trace.clone());
         let run = flow.observe(Run::new(simulation).scene(description), &fields, particle_mass);
         let mut run = orders.plan(run, flow.end_time(), |every| {
             let dims = fields.velocity.len();
@@ -343,7 +363,7 @@ impl<T: Real, P: Real> Prepared for SphScene<T, P> {
 }
 
 /// Speed in the plane, or in 3-D in a slice through the middle.
-fn picture<T: Real, P: Real>(
+pub(crate) fn picture<T: Real, P: Real>(
     simulation: &Simulation<Cells<P>>,
     fields: &Fields<T, P>,
     title: String,
@@ -372,6 +392,7 @@ fn picture<T: Real, P: Real>(
         .title(title)
         .quantity(Axis::new("speed").unit("m/s"))
         .window([region.lower[0], region.lower[1]], [region.upper[0], region.upper[1]])
+        .periodic([region.periodic[0], region.periodic[1]])
 }
 
 /// Everything that is modelled, for checkpoints.
