@@ -5,6 +5,7 @@
 //! columns are half as fast again with it.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use bytemuck::Pod;
 
@@ -107,6 +108,16 @@ impl<'a, V: Pod, const N: usize> Targets<'a, V, N> {
 }
 
 impl<V: Pod, const N: usize> Targets<'_, V, N> {
+    /// A part of every row.
+    ///
+    /// # Panics
+    /// If there are not so many vectors.
+    #[inline(always)]
+    pub fn part(&mut self, vectors: Range<usize>) -> Targets<'_, V, N> {
+        let to = self.to.each_mut().map(|to| &mut to[vectors.clone()]);
+        Targets { to, is_past: self.is_past, thread: PhantomData }
+    }
+
     /// Writes vector `i` of every row.
     ///
     /// # Panics

@@ -137,7 +137,8 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
         let mut sum = (self.shifted(axis, 1) - self.shifted(axis, -1)) * weights[0];
         for k in 1..R {
             let by = k as isize + 1;
-            sum = sum + (self.shifted(axis, by) - self.shifted(axis, -by)) * weights[k];
+            let difference = self.shifted(axis, by) - self.shifted(axis, -by);
+            sum = difference.mul_add(weights[k], sum);
         }
         sum
     }
@@ -152,7 +153,8 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
         let mut sum = self.here() * self.weights.here[axis];
         for k in 0..R {
             let by = k as isize + 1;
-            sum = sum + (self.shifted(axis, by) + self.shifted(axis, -by)) * weights[k];
+            let both = self.shifted(axis, by) + self.shifted(axis, -by);
+            sum = both.mul_add(weights[k], sum);
         }
         sum
     }

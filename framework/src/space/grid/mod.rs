@@ -303,6 +303,11 @@ impl<'a> Tile<'a> {
         self.planes.clone().flat_map(move |k| rows.clone().map(move |j| (j, k)))
     }
 
+    /// Its rows in y and its planes in z.
+    pub fn extent(&self) -> [std::ops::Range<usize>; 2] {
+        [self.rows.clone(), self.planes.clone()]
+    }
+
     /// The grid.
     pub fn grid(&self) -> &'a Grid {
         self.grid
