@@ -90,6 +90,7 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
         let domain = Grid::builder(mesh.shape())
             .periodic(mesh.is_periodic())
             .reach(reach)
+            .bytes(size_of::<T>())
             .origin(mesh.position([0; 3]))
             .spacing(mesh.spacing())
             .build();

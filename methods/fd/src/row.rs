@@ -44,11 +44,6 @@ pub(crate) enum Advance<T> {
 }
 
 impl<T: Real> Advance<T> {
-    /// Whether it depends on what was in its place before.
-    fn is_onto(self) -> bool {
-        matches!(self, Self::TwoStep(_) | Self::Before(_))
-    }
-
     #[inline(always)]
     fn to<V: Pack<Scalar = T>>(self, here: V, rate: V) -> V {
         if let Self::Euler(dt) = self { rate.mul_add(rate.splat_like(dt), here) } else { rate }
@@ -132,6 +127,12 @@ where
         self.unknowns.iter().all(|cross| cross.closed.iter().all(Option::is_none))
     }
 
+    /// Whether what becomes of it depends on what was in its place before.
+    #[inline(always)]
+    fn is_onto(&self) -> bool {
+        matches!(self.advance, Advance::TwoStep(_) | Advance::Before(_))
+    }
+
     /// Field `f`, unknowns first.
     #[inline(always)]
     fn cross(&self, f: usize) -> &Cross<'_, T, M> {
@@ -169,36 +170,24 @@ where
             Place { x: start, count: first, window: Some((0, 0)) },
             Place { x: at(last), count: whole - last, window: Some((1, at(last) - upper)) },
         ];
-        self.run::<V, N>(simd, weights, windows, &places, [start, at(whole)], out);
-        if at(whole) < end {
-            let window = reads_beyond.then_some((1, rest - upper));
-            let place = Place { x: rest, count: 1, window };
-            self.run_again::<V>(simd, weights, windows, place, at(whole) - rest, out);
-        }
-    }
-
-    /// A pack whose first `done` points have been done.
-    #[inline(always)]
-    fn run_again<V: Pack<Scalar = T>>(
-        &self,
-        simd: V::Simd,
-        weights: &Weights<V, R>,
-        windows: &[[Window<T>; 2]],
-        place: Place,
-        done: usize,
-        out: &mut Out<'_, '_, T, F>,
-    ) {
-        let range = [place.x, place.x + V::LANES];
-        if !self.advance.is_onto() {
-            return self.run::<V, N>(simd, weights, windows, &[place], range, out);
-        }
-        let mut kept = [[T::zero(); MOST_LANES]; F];
-        for (kept, row) in kept.iter_mut().zip(out.row()) {
-            kept[..done].copy_from_slice(&row[place.x..][..done]);
-        }
-        self.run::<V, N>(simd, weights, windows, &[place], range, out);
-        for (kept, row) in kept.iter().zip(out.row()) {
-            row[place.x..][..done].copy_from_slice(&kept[..done]);
+        let left = [Place { x: rest, count: 1, window: reads_beyond.then_some((1, rest - upper)) }];
+        let again = at(whole) - rest;
+        let runs = [(&places[..], [start, at(whole)], 0), (&left, [rest, end], again)];
+        // In a loop, so that it is compiled once.
+        for &(places, range, again) in runs.iter().take(if at(whole) < end { 2 } else { 1 }) {
+            let is_kept = again > 0 && self.is_onto();
+            let mut kept = [[T::zero(); MOST_LANES]; F];
+            if is_kept {
+                for (kept, row) in kept.iter_mut().zip(out.row()) {
+                    kept[..again].copy_from_slice(&row[range[0]..][..again]);
+                }
+            }
+            self.run::<V, N>(simd, weights, windows, places, range, out);
+            if is_kept {
+                for (kept, row) in kept.iter().zip(out.row()) {
+                    row[range[0]..][..again].copy_from_slice(&kept[..again]);
+                }
+            }
         }
     }
 
@@ -285,7 +274,8 @@ where
     ) {
         let task =
             Packs::<V, E, F, G, R, N, M, K> { row: self, simd, weights, windows, places, start };
-        if self.advance.is_onto() {
+        // Asked of the equation first: what no equation needs is not compiled.
+        if E::SECOND_ORDER && self.is_onto() {
             task.onto(out.row().map(|row| V::packs_mut(simd, &mut row[start..end])));
         } else {
             out.rows.fill::<V>(simd, out.row, start..end, task);
@@ -429,15 +419,16 @@ where
         })
     }
 
-    /// Writes the next state, or the rates. Compiled for each number of axes, so that no pack asks how many there are.
+    /// Writes the next state, or the rates. Compiled for two and for three axes and inlined, so that no pack asks how
+    /// many there are.
     #[inline(always)]
-    fn fill_along<const AXES: usize>(&self, targets: &mut Targets<'_, V::Vector, F>) {
+    fn fill_along(&self, axes: usize, targets: &mut Targets<'_, V::Vector, F>) {
         let advance = self.row.advance;
         for (place, range) in self.places() {
             let arounds = self.row.arounds::<V, K>(self.simd, self.windows, place);
             let mut targets = targets.part(range);
             for pack in 0..place.count {
-                let [here, rates] = self.rates(AXES, &arounds, pack);
+                let [here, rates] = self.rates(axes, &arounds, pack);
                 let mut next = [here[0].vector(); F];
                 for f in 0..F {
                     next[f] = advance.to(here[f], rates[f]).vector();
@@ -451,20 +442,20 @@ where
     #[inline(always)]
     fn onto(self, mut targets: [&mut [V::Vector]; F]) {
         match self.weights.axes {
-            3 => self.onto_along::<3>(&mut targets),
-            2 => self.onto_along::<2>(&mut targets),
-            _ => self.onto_along::<1>(&mut targets),
+            3 if V::LANES > 1 => self.onto_along(3, &mut targets),
+            2 if V::LANES > 1 => self.onto_along(2, &mut targets),
+            axes => self.onto_along(axes, &mut targets),
         }
     }
 
     #[inline(always)]
-    fn onto_along<const AXES: usize>(&self, targets: &mut [&mut [V::Vector]; F]) {
+    fn onto_along(&self, axes: usize, targets: &mut [&mut [V::Vector]; F]) {
         let advance = self.row.advance;
         for (place, range) in self.places() {
             let arounds = self.row.arounds::<V, K>(self.simd, self.windows, place);
-            let mut targets = targets.each_mut().map(|to| &mut to[range.clone()]);
+            let targets = targets.each_mut().map(|to| &mut to[range.clone()]);
             for pack in 0..place.count {
-                let [here, rates] = self.rates(AXES, &arounds, pack);
+                let [here, rates] = self.rates(axes, &arounds, pack);
                 for f in 0..F {
                     prefetch(targets[f], pack + AHEAD);
                     let before = V::of(self.simd, targets[f][pack]);
@@ -491,9 +482,9 @@ where
     #[inline(always)]
     fn fill(self, targets: &mut Targets<'_, V::Vector, F>) {
         match self.weights.axes {
-            3 => self.fill_along::<3>(targets),
-            2 => self.fill_along::<2>(targets),
-            _ => self.fill_along::<1>(targets),
+            3 if V::LANES > 1 => self.fill_along(3, targets),
+            2 if V::LANES > 1 => self.fill_along(2, targets),
+            axes => self.fill_along(axes, targets),
         }
     }
 }

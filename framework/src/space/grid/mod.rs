@@ -46,6 +46,7 @@ pub struct GridBuilder {
     reach: usize,
     origin: [f64; 3],
     spacing: [f64; 3],
+    bytes: usize,
     tile: Option<[usize; 2]>,
     shifts: Vec<[isize; 2]>,
 }
@@ -75,8 +76,15 @@ impl GridBuilder {
         self
     }
 
-    /// Rows (in y) and planes (in z) of a tile; by default chosen so that a tile has some
-    /// 8,192 points, a task of several microseconds, small against the second-level cache; as many
+    /// Bytes of a point in the fields that are stepped, each by itself; 8 by default. Tiles are chosen by what they take
+    /// in the caches.
+    pub fn bytes(mut self, bytes: usize) -> Self {
+        self.bytes = bytes;
+        self
+    }
+
+    /// Rows (in y) and planes (in z) of a tile; by default chosen so that a field takes some
+    /// 64 KiB in a tile, a task of several microseconds, small against the second-level cache; as many
     /// planes as the stencil reaches: nothing is copied between tiles, so they need not be compact, and a
     /// front of tiles that run ahead under `PeerToPeer` moves on by the planes of one with every step; and, in
     /// space, some times as high as that, since every step of the front leaves as much of it behind in y.
@@ -99,7 +107,8 @@ impl GridBuilder {
     pub fn build(self) -> Grid {
         let [nx, ny, nz] = self.shape;
         assert!(nx * ny * nz > 0, "a grid of shape {:?} has no points", self.shape);
-        let [rows, planes] = self.tile.unwrap_or_else(|| default_tile(self.shape, self.reach));
+        let [rows, planes] =
+            self.tile.unwrap_or_else(|| default_tile(self.shape, self.bytes, self.reach));
         assert!(rows * planes > 0, "a tile needs rows");
         let tile = [rows.min(ny), planes.min(nz)];
         let tiles = [ny.div_ceil(tile[0]), nz.div_ceil(tile[1])];
@@ -111,7 +120,7 @@ impl GridBuilder {
             spacing: self.spacing,
             tile,
             tiles,
-            strip: strip(rows * nx, tiles[0]),
+            strip: strip(rows * nx * self.bytes, tiles[0]),
             partition: Partition::new(nx * ny * nz),
         };
         grid.divide(&self.shifts);
@@ -119,17 +128,17 @@ impl GridBuilder {
     }
 }
 
-fn default_tile([nx, ny, nz]: [usize; 3], reach: usize) -> [usize; 2] {
+fn default_tile([nx, ny, nz]: [usize; 3], bytes: usize, reach: usize) -> [usize; 2] {
     let planes = reach.clamp(1, nz);
     let least = if nz > 1 { 4 * planes } else { 1 };
-    [(8192 / (nx * planes)).max(least).min(ny), planes]
+    [(65_536 / (nx * bytes * planes)).max(least).min(ny), planes]
 }
 
-/// Tiles side by side in a strip, of `tiles` in all, a plane of one having `points`: some 32,768 points in a plane,
-/// of which the few planes of several steps are a part of a worker's share of the caches, and strips about equally
+/// Tiles side by side in a strip, of `tiles` in all, a plane of one taking so many bytes: some 256 KiB in a plane, of
+/// which the few planes of several steps are a part of a worker's share of the caches, and strips about equally
 /// wide.
-fn strip(points: usize, tiles: usize) -> usize {
-    let widest = (32_768 / points).max(1);
+fn strip(bytes: usize, tiles: usize) -> usize {
+    let widest = (262_144 / bytes).max(1);
     tiles.div_ceil(tiles.div_ceil(widest))
 }
 
@@ -144,6 +153,7 @@ impl Grid {
             reach: 1,
             origin: [0.0; 3],
             spacing: [1.0; 3],
+            bytes: 8,
             tile: None,
             shifts: Vec::new(),
         }
