@@ -120,7 +120,7 @@ impl GridBuilder {
             spacing: self.spacing,
             tile,
             tiles,
-            strip: strip(rows * nx * self.bytes, tiles[0]),
+            strip: if nz > 1 { strip(rows * nx * self.bytes, tiles[0]) } else { tiles[0] },
             partition: Partition::new(nx * ny * nz),
         };
         grid.divide(&self.shifts);
