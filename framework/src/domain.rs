@@ -180,6 +180,7 @@ pub struct Partition {
     neighbours: Vec<u32>,
     neighbour_start: Vec<u32>,
     shifts: Vec<Shift>,
+    strip: Option<usize>,
     sealed: bool,
     by_start: Vec<Span>,
 }
@@ -203,7 +204,19 @@ impl Partition {
         self.neighbour_start.clear();
         self.neighbour_start.push(0);
         self.shifts.clear();
+        self.strip = None;
         self.sealed = false;
+    }
+
+    /// Tells that sub-domains are numbered strip by strip, `width` side by side in each, instead of all that lie
+    /// beside one another: who steps some of them ahead of others need not look further.
+    pub fn number_in_strips(&mut self, width: usize) {
+        self.strip = Some(width);
+    }
+
+    /// Sub-domains side by side in a strip, if they are numbered in strips.
+    pub fn strip(&self) -> Option<usize> {
+        self.strip
     }
 
     /// Adds the next sub-domain; `neighbours` ascending.

@@ -143,6 +143,7 @@ impl<'a, D: Domain> Leg<'a, D> {
     fn run_part(
         &self,
         worker: usize,
+        fence: &Fence,
         step: u64,
         part: usize,
         sub_domain: usize,
@@ -151,7 +152,7 @@ impl<'a, D: Domain> Leg<'a, D> {
         self.desk.with_scratch(self.step, worker, |scratch| {
             for entry in self.step.part_start[part]..self.step.part_start[part + 1] {
                 at.set(entry);
-                self.run_entry(worker, scratch, step, entry, sub_domain)?;
+                self.run_entry(worker, fence, scratch, step, entry, sub_domain)?;
             }
             Ok::<_, Fault>(())
         })?;
@@ -165,6 +166,7 @@ impl<'a, D: Domain> Leg<'a, D> {
     fn run_entry(
         &self,
         worker: usize,
+        fence: &Fence,
         scratch: &mut Scratch,
         step: u64,
         entry: usize,
@@ -177,7 +179,6 @@ impl<'a, D: Domain> Leg<'a, D> {
         let stage = &self.step.stages[stage];
         if stage.is_rate() {
             let writes = stage.writes();
-            let fence = Fence::new(self.past_caches);
             // SAFETY: the schedule runs this part of this sub-domain once, on this worker, and
             // whatever runs beside it within sight is the same part (module `view`); the leg's
             // exclusive borrow of the columns keeps their memory in place.
@@ -237,7 +238,11 @@ impl<D: Domain> Work for Leg<'_, D> {
         self.stint.steps.clone()
     }
 
-    fn run(&self, worker: usize, step: u64, part: usize, sub_domain: usize) {
+    fn fence(&self) -> Fence {
+        Fence::new(self.past_caches)
+    }
+
+    fn run(&self, worker: usize, fence: &Fence, step: u64, part: usize, sub_domain: usize) {
         if self.failed() {
             return;
         }
@@ -245,8 +250,9 @@ impl<D: Domain> Work for Leg<'_, D> {
         let begin = self.watch.trace.map(Trace::now);
         // One net under everything: a worker that unwound would leave the others waiting for it.
         let at = Cell::new(self.step.part_start[part]);
-        let outcome =
-            catch_unwind(AssertUnwindSafe(|| self.run_part(worker, step, part, sub_domain, &at)));
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            self.run_part(worker, fence, step, part, sub_domain, &at)
+        }));
         if let (Some(trace), Some(begin)) = (self.watch.trace, begin) {
             let (part, sub_domain) = (part as u32, sub_domain as u32);
             trace.record(worker, Event { begin, end: trace.now(), step, part, sub_domain });

@@ -4,6 +4,7 @@ use loom::cell::UnsafeCell;
 use loom::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::domain::{Partition, Span};
+use crate::pack::Fence;
 use crate::schedule::Work;
 
 /// A rate part and an update part on a row of sub-domains of one point each.
@@ -79,7 +80,11 @@ impl Work for Row {
         0..self.steps
     }
 
-    fn run(&self, worker: usize, step: u64, part: usize, id: usize) {
+    fn fence(&self) -> Fence {
+        Fence::new(false)
+    }
+
+    fn run(&self, worker: usize, _: &Fence, step: u64, part: usize, id: usize) {
         if self.failed() {
             return;
         }

@@ -5,6 +5,7 @@
 //! columns are half as fast again with it.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use bytemuck::Pod;
 
@@ -114,6 +115,16 @@ impl<V: Pod, const N: usize> Targets<'_, V, N> {
     #[inline(always)]
     pub fn count(&self) -> usize {
         self.to[0].len()
+    }
+
+    /// A part of every row.
+    ///
+    /// # Panics
+    /// If there are not so many vectors.
+    #[inline(always)]
+    pub fn part(&mut self, vectors: Range<usize>) -> Targets<'_, V, N> {
+        let to = self.to.each_mut().map(|to| &mut to[vectors.clone()]);
+        Targets { to, is_past: self.is_past, thread: PhantomData }
     }
 
     /// Writes vector `i` of every row.

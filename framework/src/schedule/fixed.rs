@@ -23,9 +23,11 @@ impl Fixed {
             let share = sub_domains * worker / workers..sub_domains * (worker + 1) / workers;
             for step in work.steps() {
                 for part in 0..work.parts() {
+                    let fence = work.fence();
                     for place in share.clone() {
-                        work.run(worker, step, part, order.at(place));
+                        work.run(worker, &fence, step, part, order.at(place));
                     }
+                    drop(fence);
                     meeting.arrive(|| stop.store(work.failed(), Ordering::Relaxed));
                     if stop.load(Ordering::Relaxed) {
                         return;

@@ -23,7 +23,7 @@ impl ForkJoin {
                 self.pool.install(|| {
                     (0..work.partition().len()).into_par_iter().for_each(|place| {
                         let worker = rayon::current_thread_index().unwrap_or(0);
-                        work.run(worker, step, part, order.at(place));
+                        work.run(worker, &work.fence(), step, part, order.at(place));
                     });
                 });
                 if work.failed() {

@@ -25,11 +25,13 @@ impl Lockstep {
         team.run(|worker| {
             for step in work.steps() {
                 for part in 0..work.parts() {
+                    let fence = work.fence();
                     while let Some(places) = dispatch.request() {
                         for place in places {
-                            work.run(worker, step, part, order.at(place));
+                            work.run(worker, &fence, step, part, order.at(place));
                         }
                     }
+                    drop(fence);
                     dispatch.complete(|| stop.store(work.failed(), Ordering::Relaxed));
                     if stop.load(Ordering::Relaxed) {
                         return;

@@ -56,7 +56,7 @@ impl PeerToPeer {
             while let Some(id) = dispatch.request(&mut server, |place| order.at(place) as u32) {
                 let q = progress.begin(partition, id);
                 let step = steps.start + u64::from(q / parts);
-                work.run(worker, step, (q % parts) as usize, id as usize);
+                work.run(worker, &work.fence(), step, (q % parts) as usize, id as usize);
                 if work.failed() {
                     dispatch.close();
                 }

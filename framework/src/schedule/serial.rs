@@ -7,8 +7,9 @@ use super::work::Work;
 pub(super) fn run(work: &dyn Work, order: &Order) {
     for step in work.steps() {
         for part in 0..work.parts() {
+            let fence = work.fence();
             for place in 0..work.partition().len() {
-                work.run(0, step, part, order.at(place));
+                work.run(0, &fence, step, part, order.at(place));
             }
             if work.failed() {
                 return;

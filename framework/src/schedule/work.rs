@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::domain::Partition;
+use crate::pack::Fence;
 
 /// Work cut into parts and sub-domains: all that a schedule knows.
 pub(crate) trait Work: Sync {
@@ -12,8 +13,11 @@ pub(crate) trait Work: Sync {
     fn partition(&self) -> &Partition;
     /// Numbers of the steps to run.
     fn steps(&self) -> Range<u64>;
+    /// What is run may be written past the caches until this goes out of scope: on the thread that runs it, and before
+    /// anybody else is told that it has been run.
+    fn fence(&self) -> Fence;
     /// Runs one part of one step of one sub-domain; never unwinds.
-    fn run(&self, worker: usize, step: u64, part: usize, sub_domain: usize);
+    fn run(&self, worker: usize, fence: &Fence, step: u64, part: usize, sub_domain: usize);
     /// Whether something failed, so that the rest need not be run.
     fn failed(&self) -> bool;
 }

@@ -7,6 +7,9 @@
 //! a step. Measured on two cores with 32 MiB of shared cache, five-point heat in slabs of 128 KiB
 //! to 1 MiB: the best `K` fills about half of a worker's share, and running past it loses what was
 //! gained.
+//!
+//! Where sub-domains are numbered in strips, the front moves to the side by one with each step; once it has
+//! left its strip, little of it stays in the cache. So `K` is no more than the strip is wide.
 
 use super::Model;
 use super::cache::cache_share;
@@ -22,7 +25,8 @@ pub(super) fn steps_ahead<D: Domain>(model: &Model<D>, workers: usize) -> u64 {
         return 1;
     }
     let bytes = model.columns.memory() as f64 / partition.len() as f64;
-    choose(bytes, directions(partition), cache_share(workers) as f64)
+    let steps = choose(bytes, directions(partition), cache_share(workers) as f64);
+    partition.strip().map_or(steps, |strip| steps.min(strip as u64))
 }
 
 fn choose(bytes: f64, directions: f64, share: f64) -> u64 {

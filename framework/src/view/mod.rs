@@ -17,6 +17,9 @@
 //!   neighbour reaches what *its* neighbours own by the shift, two apart, so memory that has a shift is
 //!   read by owners only. A stage that has shifts is a part of its own.
 //!
+//! * What a stage writes past the caches is behind a fence before the worker tells anybody that it has run it
+//!   (`Work::fence`); until then only that worker sees it, in order.
+//!
 //! Hence no element that is being written is visible to anybody else. What a stage author
 //! could get wrong (a column both read from neighbours and written, a span that is not a
 //! neighbour's, one column borrowed twice) is checked here and panics, which the run reports

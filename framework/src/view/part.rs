@@ -51,7 +51,7 @@ pub struct PartMut<'a, T> {
     part: PhantomData<&'a mut [T]>,
     /// Whether some of it was written past the caches, and no fence has come since. Before one, nobody gets to see
     /// any of it who could show it to another thread; this does not leave its own. The last is that of the
-    /// stage's leave to do so.
+    /// leave to do so, which a worker drops before it tells anybody what it has run.
     is_past: bool,
 }
 
@@ -117,7 +117,7 @@ impl<'a, T> PartMut<'a, T> {
             *row = P::packs_mut(simd, values);
         }
         // SAFETY: the parts remember it until there is a fence. The last is that of `bypass`, which is on this
-        // thread and behind all that the stage does.
+        // thread, behind all that the stage does, and before anybody is told that it has been done.
         let mut targets = unsafe { Targets::new(rows, bypass) };
         for part in parts {
             part.is_past |= targets.is_past();

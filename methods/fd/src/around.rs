@@ -8,7 +8,7 @@ use crate::operator::{Order, central, value};
 /// Coefficients of central differences along every axis, for packs.
 pub(crate) struct Weights<V, const R: usize> {
     /// Number of axes.
-    axes: usize,
+    pub axes: usize,
     first: [[V; R]; 3],
     second: [[V; R]; 3],
     /// Of the point itself in the second derivative.
@@ -85,6 +85,7 @@ pub(crate) struct Around<'a, V: Pack, const K: usize> {
 pub struct At<'a, V: Pack, const R: usize, const K: usize> {
     around: &'a Around<'a, V, K>,
     weights: &'a Weights<V, R>,
+    axes: usize,
     pack: usize,
 }
 
@@ -93,15 +94,16 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
     pub(crate) fn new(
         around: &'a Around<'a, V, K>,
         weights: &'a Weights<V, R>,
+        axes: usize,
         pack: usize,
     ) -> Self {
-        Self { around, weights, pack }
+        Self { around, weights, axes, pack }
     }
 
     /// Number of axes.
     #[inline(always)]
     pub fn axes(self) -> usize {
-        self.weights.axes
+        self.axes
     }
 
     /// The field here.
@@ -135,7 +137,8 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
         let mut sum = (self.shifted(axis, 1) - self.shifted(axis, -1)) * weights[0];
         for k in 1..R {
             let by = k as isize + 1;
-            sum = sum + (self.shifted(axis, by) - self.shifted(axis, -by)) * weights[k];
+            let difference = self.shifted(axis, by) - self.shifted(axis, -by);
+            sum = difference.mul_add(weights[k], sum);
         }
         sum
     }
@@ -150,7 +153,8 @@ impl<'a, V: Pack, const R: usize, const K: usize> At<'a, V, R, K> {
         let mut sum = self.here() * self.weights.here[axis];
         for k in 0..R {
             let by = k as isize + 1;
-            sum = sum + (self.shifted(axis, by) + self.shifted(axis, -by)) * weights[k];
+            let both = self.shifted(axis, by) + self.shifted(axis, -by);
+            sum = both.mul_add(weights[k], sum);
         }
         sum
     }

@@ -11,7 +11,7 @@
 //! | [`equation`] | one equation each, and how long its time steps may be |
 //! | `around.rs` | what an equation sees: fields around a pack of points, and their derivatives |
 //! | `line.rs` | derivatives along one axis, with its boundary conditions |
-//! | `sweep.rs`, `row.rs` | the stage that evaluates an equation: rows of a tile, packs of a row |
+//! | `sweep.rs`, `plane.rs`, `row.rs` | the stage that evaluates an equation: rows of a tile and those around them, packs of a row |
 //! | `stability.rs` | the longest stable time step |
 //! | `time_stepping.rs`, `implicit/` | explicit and implicit steps; the latter with the cargo feature `implicit` |
 //! | `navier_stokes/` | incompressible flow on a staggered grid: its terms, stages and model |
@@ -63,6 +63,7 @@ mod around;
 mod implicit;
 mod line;
 mod navier_stokes;
+mod plane;
 mod poisson;
 mod row;
 mod stability;

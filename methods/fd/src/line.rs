@@ -100,6 +100,15 @@ impl<T: Real> Line<T> {
         at(0).or_else(|| at(1))
     }
 
+    /// Whether derivatives at a point are central differences of points that there are, so many to either side.
+    pub fn is_inner(&self, point: usize, reach: usize) -> bool {
+        match &self.ends {
+            Ends::Periodic => true,
+            Ends::Closed(_) => self.row(point).is_none(),
+            Ends::Ghosts(_) => reach <= point && point + reach < self.points,
+        }
+    }
+
     /// The point, or how far in it is, counted from an end.
     pub fn counted_from(&self, point: usize, end: usize) -> usize {
         if end == 0 { point } else { self.points - 1 - point }

@@ -88,15 +88,13 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
             }
         }
         mesh.check_memory::<T>(2 * F + G)?;
-        let mut domain = Grid::builder(mesh.shape())
+        let domain = Grid::builder(mesh.shape())
             .periodic(mesh.is_periodic())
             .reach(reach)
+            .bytes(size_of::<T>())
             .origin(mesh.position([0; 3]))
-            .spacing(mesh.spacing());
-        if let Some([rows, planes]) = block(mesh.shape(), reach) {
-            domain = domain.tile(rows, planes);
-        }
-        let domain = domain.build();
+            .spacing(mesh.spacing())
+            .build();
         let columns = Columns::new(domain.points());
         let (unknowns, given, out) = (Vec::new(), Vec::new(), Vec::new());
         Ok(Self { mesh, boundaries, order, domain, columns, unknowns, given, out })
@@ -274,16 +272,6 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
             positions: [0, 1, 2].map(|a| (0..shape[a]).map(|i| along(a, i)).collect()),
         }))
     }
-}
-
-/// Rows and planes of a tile in space: a stencil reads twice its reach more of both, from planes around that caches do
-/// not hold where they are large, so a tile is to be some times as thick as that; and as high as leaves many for workers to
-/// balance, for memory is fast along long stretches. `None` in the plane, or if it were not even as high as thick.
-fn block([_, ny, nz]: [usize; 3], reach: usize) -> Option<[usize; 2]> {
-    const TILES: usize = 256;
-    let planes = (4 * reach).max(8);
-    let rows = ny.div_ceil(TILES.div_ceil(nz.div_ceil(planes)));
-    (nz > 1 && rows >= planes).then_some([rows, planes])
 }
 
 /// Weights of the points along a side in the norm of the difference operators, m.

@@ -1,9 +1,11 @@
 //! One row of points, evaluated in packs.
 //!
-//! Short rows are copied, with what lies beyond their ends: the other end of a periodic axis, or ghost points.
-//! In long ones only the packs at the two ends read a copy, the others memory as it lies. Points next to closed
-//! ends have coefficients of their own, and go one by one; that part is compiled once, not for every
-//! instruction set. A number has the same bits however it was computed.
+//! The packs at the two ends read a copy, with what lies beyond the end: the other end of a periodic axis, or ghost
+//! points; all others read memory as it lies. Points next to closed ends have coefficients of their own, and go one
+//! by one; that part is compiled once, not for every instruction set. A number has the same bits however it was
+//! computed.
+
+use std::ops::Range;
 
 use finegrain_framework::Real;
 use finegrain_framework::pack::{Fill, MOST_LANES, Pack, Packed, Targets, prefetch};
@@ -14,16 +16,11 @@ use crate::equation::Equation;
 use crate::line::{self, Ends};
 use crate::sweep::Sweep;
 
-/// A copy of a stretch of a row, and of what is read on either side of it.
-#[repr(align(64))]
-#[derive(Clone)]
+/// A copy of what lies around the points next to an end of a row.
+#[derive(Clone, Copy)]
 pub(crate) struct Window<T>([T; WINDOW]);
-const WINDOW: usize = STRETCH + 2 * MARGIN;
-/// Rows up to so long are copied as one, a small part of the nearest cache: packs at ends cost as much as several
-/// others.
-const STRETCH: usize = 512;
-/// Room for what lies beyond an end; packs behind it are aligned.
-const MARGIN: usize = MOST_LANES;
+/// Two packs and what is read on either side of them.
+const WINDOW: usize = 3 * MOST_LANES;
 
 impl<T: Real> Default for Window<T> {
     fn default() -> Self {
@@ -47,21 +44,20 @@ pub(crate) enum Advance<T> {
 }
 
 impl<T: Real> Advance<T> {
-    /// Whether it depends on what was in its place before.
-    fn is_onto(self) -> bool {
-        matches!(self, Self::TwoStep(_) | Self::Before(_))
-    }
-
     #[inline(always)]
     fn to<V: Pack<Scalar = T>>(self, here: V, rate: V) -> V {
-        if let Self::Euler(dt) = self { here + rate * dt } else { rate }
+        if let Self::Euler(dt) = self { rate.mul_add(rate.splat_like(dt), here) } else { rate }
     }
 
     #[inline(always)]
     fn onto<V: Pack<Scalar = T>>(self, here: V, rate: V, before: V) -> V {
         match self {
-            Self::Before(half_dt_squared) => here + before + rate * half_dt_squared,
-            Self::TwoStep(dt_squared) => here + (here - before) + rate * dt_squared,
+            Self::Before(half_dt_squared) => {
+                rate.mul_add(rate.splat_like(half_dt_squared), here + before)
+            }
+            Self::TwoStep(dt_squared) => {
+                rate.mul_add(rate.splat_like(dt_squared), here + (here - before))
+            }
             _ => self.to(here, rate),
         }
     }
@@ -112,12 +108,13 @@ impl<T, const F: usize> Out<'_, '_, T, F> {
     }
 }
 
-/// Where packs are: `count` from `x` on, in the row itself, or in the window, from `offset` on.
+/// Where packs are: `count` from point `x` on. What is read along the row lies in the row itself, or in the window of
+/// an end, from a place on.
 #[derive(Clone, Copy)]
 struct Place {
     x: usize,
     count: usize,
-    offset: Option<usize>,
+    window: Option<(usize, usize)>,
 }
 
 impl<T: Real, E, const F: usize, const G: usize, const R: usize, const N: usize, const M: usize>
@@ -128,6 +125,12 @@ where
     /// Whether it is away from closed ends of y and z.
     pub fn is_open(&self) -> bool {
         self.unknowns.iter().all(|cross| cross.closed.iter().all(Option::is_none))
+    }
+
+    /// Whether what becomes of it depends on what was in its place before.
+    #[inline(always)]
+    fn is_onto(&self) -> bool {
+        matches!(self.advance, Advance::TwoStep(_) | Advance::Before(_))
     }
 
     /// Field `f`, unknowns first.
@@ -142,41 +145,49 @@ where
         &self,
         simd: V::Simd,
         weights: &Weights<V, R>,
-        window: &mut [Window<T>],
+        windows: &mut [[Window<T>; 2]],
         [start, end]: [usize; 2],
         out: &mut Out<'_, '_, T, F>,
     ) {
-        // Where packs read nothing beyond the row, in whole packs from its beginning.
-        let first = if start >= R { start } else { R.next_multiple_of(V::LANES) };
-        let last = end.min(self.unknowns[0].here.len() - R);
-        let mut done = start;
-        while done < end {
-            let mut place = Place { x: done, count: 1, offset: None };
-            if end - done > STRETCH && first <= done && done + V::LANES <= last {
-                place.count = (last - done) / V::LANES;
-            } else {
-                // The last pack begins before what has been done.
-                place.x = done.min(end - V::LANES);
-                if end - place.x <= STRETCH {
-                    place.count = (end - place.x) / V::LANES;
-                }
-                place.offset = Some(MARGIN);
-                self.copy(window, place.x, R, place.count * V::LANES + 2 * R);
-            }
-            let again = done - place.x;
-            if again == 0 {
-                self.run::<V, N>(simd, weights, window, place, out);
-            } else {
-                let mut kept = [[T::zero(); MOST_LANES]; F];
+        let nx = self.unknowns[0].here.len();
+        let whole = (end - start) / V::LANES;
+        let at = |pack: usize| start + pack * V::LANES;
+        // Packs that read nothing beyond the row; where points are left over, one more begins before what has been
+        // done.
+        let first = R.saturating_sub(start).div_ceil(V::LANES).min(whole);
+        let last = ((nx - R - start) / V::LANES).clamp(first, whole);
+        let (rest, upper) = (end - V::LANES, at(last).min(end - V::LANES));
+        if first > 0 {
+            self.copy(windows, 0, [start, at(first)], R);
+        }
+        let reads_beyond = end + R > nx;
+        if reads_beyond {
+            self.copy(windows, 1, [upper, end], R);
+        }
+        let places = [
+            // Longest first: what has just been copied is there when the others read it.
+            Place { x: at(first), count: last - first, window: None },
+            Place { x: start, count: first, window: Some((0, 0)) },
+            Place { x: at(last), count: whole - last, window: Some((1, at(last) - upper)) },
+        ];
+        let left = [Place { x: rest, count: 1, window: reads_beyond.then_some((1, rest - upper)) }];
+        let again = at(whole) - rest;
+        let runs = [(&places[..], [start, at(whole)], 0), (&left, [rest, end], again)];
+        // In a loop, so that it is compiled once.
+        for &(places, range, again) in runs.iter().take(if at(whole) < end { 2 } else { 1 }) {
+            let is_kept = again > 0 && self.is_onto();
+            let mut kept = [[T::zero(); MOST_LANES]; F];
+            if is_kept {
                 for (kept, row) in kept.iter_mut().zip(out.row()) {
-                    kept[..again].copy_from_slice(&row[place.x..done]);
-                }
-                self.run::<V, N>(simd, weights, window, place, out);
-                for (kept, row) in kept.iter().zip(out.row()) {
-                    row[place.x..done].copy_from_slice(&kept[..again]);
+                    kept[..again].copy_from_slice(&row[range[0]..][..again]);
                 }
             }
-            done = place.x + place.count * V::LANES;
+            self.run::<V, N>(simd, weights, windows, places, range, out);
+            if is_kept {
+                for (kept, row) in kept.iter().zip(out.row()) {
+                    row[range[0]..][..again].copy_from_slice(&kept[..again]);
+                }
+            }
         }
     }
 
@@ -184,7 +195,7 @@ where
     pub fn points(
         &self,
         weights: &Weights<One<T>, R>,
-        window: &mut [Window<T>],
+        windows: &mut [[Window<T>; 2]],
         [start, end]: [usize; 2],
         out: &mut Out<'_, '_, T, F>,
     ) {
@@ -192,42 +203,55 @@ where
         let margin = self.closed.max(M / 2);
         let mut x = start;
         while x < end {
-            let mut place = Place { x, count: 1, offset: None };
+            let mut place = Place { x, count: 1, window: None };
             if margin <= x && x + margin < nx {
                 place.count = end.min(nx - margin) - x;
             } else {
-                place.offset = Some(MARGIN);
-                self.copy(window, x, M / 2, M);
+                place.window = Some((0, 0));
+                self.copy(windows, 0, [x, x + 1], M / 2);
             }
-            self.run::<One<T>, M>(pulp::Scalar, weights, window, place, out);
+            let range = [x, x + place.count];
+            self.run::<One<T>, M>(pulp::Scalar, weights, windows, &[place], range, out);
             x += place.count;
         }
     }
 
-    /// Copies `length` places of the rows, from `before` before `x` on, with what lies beyond their ends, to
-    /// where place `x` is at [`MARGIN`].
-    fn copy(&self, window: &mut [Window<T>], x: usize, before: usize, length: usize) {
+    /// Copies the points from `start` to `end` into the windows of an end, with so many places on either side, of
+    /// which some may lie beyond the row.
+    fn copy(
+        &self,
+        windows: &mut [[Window<T>; 2]],
+        end_of_row: usize,
+        [start, end]: [usize; 2],
+        aside: usize,
+    ) {
         let nx = self.unknowns[0].here.len();
-        // Of the window, how much lies before the row and how much does not lie beyond it.
-        let (start, end) = (before.saturating_sub(x), (nx + before).saturating_sub(x).min(length));
-        for f in 0..F + G {
-            let window = &mut window[f].0[MARGIN - before..][..length];
-            let row = self.cross(f).here;
-            window[start..end].copy_from_slice(&row[x + start - before..x + end - before]);
-            for n in (0..start).chain(end..length) {
-                window[n] = self.beyond(f, (x + n) as isize - before as isize);
+        let from = start as isize - aside as isize;
+        for (f, windows) in windows.iter_mut().enumerate() {
+            let (row, line) = (self.cross(f).here, self.sweep.line(f, 0));
+            let window = &mut windows[end_of_row].0[..end - start + 2 * aside];
+            if line.is_some_and(|line| matches!(line.ends, Ends::Periodic)) {
+                let mut place = from.rem_euclid(nx as isize) as usize;
+                for value in window {
+                    *value = row[place];
+                    place = if place + 1 < nx { place + 1 } else { 0 };
+                }
+            } else {
+                for (value, place) in window.iter_mut().zip(from..) {
+                    let within = usize::try_from(place).ok().and_then(|place| row.get(place));
+                    *value = within.copied().unwrap_or_else(|| self.beyond(f, place));
+                }
             }
         }
     }
 
-    /// Field `f` at a place beyond the row; 0 where there is nothing.
+    /// Field `f` at a place beyond a bounded row; 0 where there is nothing.
     fn beyond(&self, f: usize, place: isize) -> T {
         let row = self.cross(f).here;
         let nx = row.len() as isize;
         let Some(line) = self.sweep.line(f, 0) else { return T::zero() };
         match &line.ends {
-            Ends::Periodic => row[place.rem_euclid(nx) as usize],
-            Ends::Closed(_) => T::zero(),
+            Ends::Periodic | Ends::Closed(_) => T::zero(),
             Ends::Ghosts(ghosts) => {
                 let (end, depth) = if place < 0 { (0, -1 - place) } else { (1, place - nx) };
                 let Some(ghost) = ghosts[end].get(depth as usize) else { return T::zero() };
@@ -237,32 +261,44 @@ where
         }
     }
 
+    /// Points of the row, in places that hold all of them.
     #[inline(always)]
     fn run<V: Pack<Scalar = T>, const K: usize>(
         &self,
         simd: V::Simd,
         weights: &Weights<V, R>,
-        window: &[Window<T>],
-        place: Place,
+        windows: &[[Window<T>; 2]],
+        places: &[Place],
+        [start, end]: [usize; 2],
         out: &mut Out<'_, '_, T, F>,
     ) {
-        let Place { x, count, .. } = place;
-        let mut unknowns = [self.around::<V, K>(simd, 0, window, place); F];
+        let task =
+            Packs::<V, E, F, G, R, N, M, K> { row: self, simd, weights, windows, places, start };
+        // Asked of the equation first: what no equation needs is not compiled.
+        if E::SECOND_ORDER && self.is_onto() {
+            task.onto(out.row().map(|row| V::packs_mut(simd, &mut row[start..end])));
+        } else {
+            out.rows.fill::<V>(simd, out.row, start..end, task);
+        }
+    }
+
+    /// All fields around packs.
+    #[inline(always)]
+    fn arounds<'b, V: Pack<Scalar = T>, const K: usize>(
+        &'b self,
+        simd: V::Simd,
+        windows: &'b [[Window<T>; 2]],
+        place: Place,
+    ) -> ([Around<'b, V, K>; F], [Around<'b, V, K>; G]) {
+        let mut unknowns = [self.around::<V, K>(simd, 0, windows, place); F];
         for f in 1..F {
-            unknowns[f] = self.around::<V, K>(simd, f, window, place);
+            unknowns[f] = self.around::<V, K>(simd, f, windows, place);
         }
         let mut given = [unknowns[0]; G];
         for g in 0..G {
-            given[g] = self.around::<V, K>(simd, F + g, window, place);
+            given[g] = self.around::<V, K>(simd, F + g, windows, place);
         }
-        let length = count * V::LANES;
-        let task = Packs { row: self, weights, unknowns, given, count };
-        if self.advance.is_onto() {
-            let rows = out.row();
-            task.onto(rows.map(|row| &mut V::packs_mut(simd, &mut row[x..x + length])[..count]));
-        } else {
-            out.rows.fill::<V>(simd, out.row, x..x + length, task);
-        }
+        (unknowns, given)
     }
 
     /// Field `f` around packs.
@@ -271,20 +307,21 @@ where
         &'b self,
         simd: V::Simd,
         f: usize,
-        window: &'b [Window<T>],
+        windows: &'b [[Window<T>; 2]],
         place: Place,
     ) -> Around<'b, V, K> {
-        let Place { x, count, offset } = place;
+        let Place { x, count, window } = place;
         let length = count * V::LANES;
         let cross = self.cross(f);
         let mut around = Around { simd, lines: [[&[][..]; K]; 3], closed: [None; 3] };
-        let nearby = if K > N { K / 2 } else { R };
-        for n in K / 2 - nearby..K / 2 + nearby + 1 {
-            let piece = match offset {
-                None => &cross.here[x + n - K / 2..][..length],
-                Some(offset) => &window[f].0[offset + n - K / 2..][..length],
-            };
-            around.lines[0][n] = &V::packs(simd, piece)[..count];
+        let aside = if K > N { K / 2 } else { R };
+        let along = match window {
+            None => &cross.here[x - aside..],
+            Some((end, place)) => &windows[f][end].0[place..],
+        };
+        let along = &along[..length + 2 * aside];
+        for n in 0..2 * aside + 1 {
+            around.lines[0][K / 2 - aside + n] = &V::packs(simd, &along[n..][..length])[..count];
         }
         for a in 1..3 {
             for n in 0..K {
@@ -311,7 +348,7 @@ where
     }
 }
 
-/// Packs side by side, and all around them.
+/// Packs of a row from point `start` on.
 struct Packs<
     'a,
     V: Pack<Scalar: Real>,
@@ -324,10 +361,11 @@ struct Packs<
     const K: usize,
 > {
     row: &'a Row<'a, V::Scalar, E, F, G, R, N, M>,
+    simd: V::Simd,
     weights: &'a Weights<V, R>,
-    unknowns: [Around<'a, V, K>; F],
-    given: [Around<'a, V, K>; G],
-    count: usize,
+    windows: &'a [[Window<V::Scalar>; 2]],
+    places: &'a [Place],
+    start: usize,
 }
 
 impl<
@@ -343,39 +381,86 @@ impl<
 where
     E: Equation<V::Scalar, F, G>,
 {
-    /// The unknowns and their rates of change.
+    /// The unknowns and their rates of change, of an equation along so many axes.
     #[inline(always)]
-    fn rates(&self, pack: usize) -> [[V; F]; 2] {
-        let mut u = [At::new(&self.unknowns[0], self.weights, pack); F];
+    fn rates(
+        &self,
+        axes: usize,
+        (unknowns, given): &([Around<'_, V, K>; F], [Around<'_, V, K>; G]),
+        pack: usize,
+    ) -> [[V; F]; 2] {
+        let mut u = [At::new(&unknowns[0], self.weights, axes, pack); F];
         for f in 1..F {
-            u[f] = At::new(&self.unknowns[f], self.weights, pack);
+            u[f] = At::new(&unknowns[f], self.weights, axes, pack);
         }
         let mut c = [u[0]; G];
         for g in 0..G {
-            c[g] = At::new(&self.given[g], self.weights, pack);
+            c[g] = At::new(&given[g], self.weights, axes, pack);
         }
         let rates = self.row.sweep.equation.rate(u, c, self.row.dt);
         let mut here = rates;
         for f in 0..F {
             here[f] = u[f].here();
             // Processors foresee no further than the end of a page, which is about that of a row.
-            let [_, rows, planes] = &self.unknowns[f].lines;
-            let furthest = if u[f].axes() > 2 { planes[K - 1] } else { rows[K - 1] };
+            let [_, rows, planes] = &unknowns[f].lines;
+            let furthest = if axes > 2 { planes[K - 1] } else { rows[K - 1] };
             prefetch(furthest, pack + AHEAD);
         }
         [here, rates]
     }
 
+    /// Places that hold packs, and where these lie in what is written.
+    #[inline(always)]
+    fn places(&self) -> impl Iterator<Item = (Place, Range<usize>)> {
+        let places = self.places.iter().filter(|place| place.count > 0);
+        places.map(|place| {
+            let first = (place.x - self.start) / V::LANES;
+            (*place, first..first + place.count)
+        })
+    }
+
+    /// Writes the next state, or the rates. Compiled for two and for three axes and inlined, so that no pack asks how
+    /// many there are.
+    #[inline(always)]
+    fn fill_along(&self, axes: usize, targets: &mut Targets<'_, V::Vector, F>) {
+        let advance = self.row.advance;
+        for (place, range) in self.places() {
+            let arounds = self.row.arounds::<V, K>(self.simd, self.windows, place);
+            let mut targets = targets.part(range);
+            for pack in 0..place.count {
+                let [here, rates] = self.rates(axes, &arounds, pack);
+                let mut next = [here[0].vector(); F];
+                for f in 0..F {
+                    next[f] = advance.to(here[f], rates[f]).vector();
+                }
+                targets.write(pack, next);
+            }
+        }
+    }
+
     /// Advances what the targets hold.
     #[inline(always)]
-    fn onto(self, targets: [&mut [V::Vector]; F]) {
+    fn onto(self, mut targets: [&mut [V::Vector]; F]) {
+        match self.weights.axes {
+            3 if V::LANES > 1 => self.onto_along(3, &mut targets),
+            2 if V::LANES > 1 => self.onto_along(2, &mut targets),
+            axes => self.onto_along(axes, &mut targets),
+        }
+    }
+
+    #[inline(always)]
+    fn onto_along(&self, axes: usize, targets: &mut [&mut [V::Vector]; F]) {
         let advance = self.row.advance;
-        for pack in 0..self.count {
-            let [here, rates] = self.rates(pack);
-            for f in 0..F {
-                prefetch(targets[f], pack + AHEAD);
-                let before = V::of(here[f].simd(), targets[f][pack]);
-                targets[f][pack] = advance.onto(here[f], rates[f], before).vector();
+        for (place, range) in self.places() {
+            let arounds = self.row.arounds::<V, K>(self.simd, self.windows, place);
+            let targets = targets.each_mut().map(|to| &mut to[range.clone()]);
+            for pack in 0..place.count {
+                let [here, rates] = self.rates(axes, &arounds, pack);
+                for f in 0..F {
+                    prefetch(targets[f], pack + AHEAD);
+                    let before = V::of(self.simd, targets[f][pack]);
+                    targets[f][pack] = advance.onto(here[f], rates[f], before).vector();
+                }
             }
         }
     }
@@ -396,14 +481,10 @@ where
 {
     #[inline(always)]
     fn fill(self, targets: &mut Targets<'_, V::Vector, F>) {
-        let advance = self.row.advance;
-        for pack in 0..self.count {
-            let [here, rates] = self.rates(pack);
-            let mut next = [here[0].vector(); F];
-            for f in 0..F {
-                next[f] = advance.to(here[f], rates[f]).vector();
-            }
-            targets.write(pack, next);
+        match self.weights.axes {
+            3 if V::LANES > 1 => self.fill_along(3, targets),
+            2 if V::LANES > 1 => self.fill_along(2, targets),
+            axes => self.fill_along(axes, targets),
         }
     }
 }

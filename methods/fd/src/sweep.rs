@@ -3,14 +3,15 @@
 use finegrain_framework::instructions;
 use finegrain_framework::pack::Pack;
 use finegrain_framework::space::Grid;
-use finegrain_framework::space::grid::{self, RowsOfMut};
+use finegrain_framework::space::grid::RowsOfMut;
 use finegrain_framework::{
-    ColumnId, Fault, Handle, Moment, Near, Part, Rate, RateStage, Rates, Real, State,
+    ColumnId, Fault, Handle, Moment, Near, Rate, RateStage, Rates, Real, State,
 };
 
 use crate::around::{Coefficients, Weights};
 use crate::equation::Equation;
 use crate::line::{Ends, Line};
+use crate::plane::Plane;
 use crate::row::{Advance, Cross, Out, Row, Window};
 
 /// What becomes of the rate of change that an equation gives.
@@ -59,12 +60,13 @@ pub(crate) struct Scratch<T> {
     /// What is given on the boundary: of each unknown, at the two ends of x, and along a row at the end
     /// of y and z that is near.
     data: Vec<Vec<T>>,
-    window: Vec<Window<T>>,
+    /// Of each field, at the two ends of a row.
+    windows: Vec<[Window<T>; 2]>,
 }
 
 impl<T> Default for Scratch<T> {
     fn default() -> Self {
-        Self { ghosts: Vec::new(), data: Vec::new(), window: Vec::new() }
+        Self { ghosts: Vec::new(), data: Vec::new(), windows: Vec::new() }
     }
 }
 
@@ -98,33 +100,41 @@ where
         };
         scratch.ghosts.resize_with((F + G) * 4 * DEEPEST, Vec::new);
         scratch.data.resize_with(F * 3, Vec::new);
-        scratch.window.resize(F + G, Window::default());
+        scratch.windows.resize(F + G, [Window::default(); 2]);
         let closed = self.lines[0][0].as_ref().map_or(0, Line::closed);
-        let mut fields: [_; F] =
-            std::array::from_fn(|f| Rows::<_, R, N>::new(near, self.unknowns[f]));
-        let mut given: [_; G] = std::array::from_fn(|g| Rows::<_, R, N>::new(near, self.given[g]));
-        for (j, k) in near.sub_domain().rows() {
-            for rows in fields.iter_mut().chain(&mut given) {
-                rows.turn_to(k as isize);
-            }
-            self.fill(near, scratch, (j, k), moment.stage_time);
-            let Scratch { ghosts, data, window } = &mut *scratch;
-            let row = Row {
-                sweep: self,
-                unknowns: std::array::from_fn(|f| self.cross(&fields[f], ghosts, data, f, (j, k))),
-                given: std::array::from_fn(|g| self.cross(&given[g], ghosts, data, F + g, (j, k))),
-                data,
-                advance,
-                dt,
-                closed,
-            };
-            let mut out = Out { rows: out, row: (j, k) };
-            if row.is_open() && nx - 2 * closed >= V::LANES.max(2 * R) {
-                row.points(&single, window, [0, closed], &mut out);
-                row.packs::<V>(simd, &weights, window, [closed, nx - closed], &mut out);
-                row.points(&single, window, [nx - closed, nx], &mut out);
-            } else {
-                row.points(&single, window, [0, nx], &mut out);
+        let is_long = nx - 2 * closed.min(nx / 2) >= V::LANES.max(2 * R);
+        let is_bounded = (0..F + G).any(|f| (0..3).any(|a| self.is_bounded(f, a)));
+        let [rows, planes] = near.sub_domain().extent();
+        for k in planes {
+            let plane = |f| Plane::<T, R, N>::new(near, self.column(f), &rows, k);
+            let fields: [_; F] = std::array::from_fn(plane);
+            let given: [_; G] = std::array::from_fn(|g| plane(F + g));
+            for j in rows.clone() {
+                if is_bounded {
+                    self.fill(near, scratch, (j, k), moment.stage_time);
+                }
+                let Scratch { ghosts, data, windows } = &mut *scratch;
+                let cross = |plane, f| self.cross(plane, ghosts, data, f, (j, k));
+                // Not by `from_fn`, which is not inlined.
+                let mut unknowns = [cross(&fields[0], 0); F];
+                for f in 1..F {
+                    unknowns[f] = cross(&fields[f], f);
+                }
+                let mut crosses = [unknowns[0]; G];
+                for g in 0..G {
+                    crosses[g] = cross(&given[g], F + g);
+                }
+                let row = Row { sweep: self, unknowns, given: crosses, data, advance, dt, closed };
+                let mut out = Out { rows: out, row: (j, k) };
+                if !is_long || !row.is_open() {
+                    row.points(&single, windows, [0, nx], &mut out);
+                    continue;
+                }
+                row.packs::<V>(simd, &weights, windows, [closed, nx - closed], &mut out);
+                if closed > 0 {
+                    row.points(&single, windows, [0, closed], &mut out);
+                    row.points(&single, windows, [nx - closed, nx], &mut out);
+                }
             }
         }
     }
@@ -133,6 +143,10 @@ where
     #[inline(always)]
     pub fn line(&self, f: usize, a: usize) -> Option<&Line<T>> {
         if f < F { self.lines[f][a].as_ref() } else { self.given_lines[a].as_ref() }
+    }
+
+    fn is_bounded(&self, f: usize, a: usize) -> bool {
+        self.line(f, a).is_some_and(|line| !matches!(line.ends, Ends::Periodic))
     }
 
     fn column(&self, f: usize) -> State<T> {
@@ -194,111 +208,61 @@ where
     }
 
     /// The rows around row `(j, k)` of field `f`, unknowns first.
+    #[inline(always)]
     fn cross<'a>(
         &'a self,
-        rows: &Rows<'a, T, R, N>,
+        plane: &Plane<'a, T, R, N>,
         ghosts: &'a [Vec<T>],
         data: &'a [Vec<T>],
         f: usize,
         (j, k): (usize, usize),
     ) -> Cross<'a, T, M> {
-        let (y, z) = (j as isize, k as isize);
-        let mut cross = Cross { here: rows.row(y, z), lines: [[&[]; M]; 2], closed: [None; 2] };
+        let here = plane.along_z(j, 0);
+        let mut cross = Cross { here, lines: [[&[]; M]; 2], closed: [None; 2] };
         for a in 1..3 {
             let Some(line) = self.line(f, a) else { continue };
-            let at = [0, j, k][a];
-            let mut range = -(R as isize)..R as isize + 1;
-            if let Some((row, _)) = line.row(at) {
-                range = row.from..row.to();
-                if f < F {
-                    cross.closed[a - 1] = Some((row, &data[f * 3 + a][..]));
-                }
+            if !line.is_inner([0, j, k][a], R) {
+                self.cross_near_end(&mut cross, plane, [ghosts, data], (f, a), (j, k));
+                continue;
             }
-            for by in range {
-                let beyond = at as isize + by;
-                let past = [-1 - beyond, beyond - line.points as isize];
-                let end = past.iter().position(|&past| past >= 0);
-                cross.lines[a - 1][(by + (M / 2) as isize) as usize] = match (end, &line.ends) {
-                    (Some(end), Ends::Ghosts(_)) => {
-                        &ghosts[ghost_row(f, a, end, past[end] as usize)]
-                    }
-                    (Some(_), Ends::Closed(_)) => &[],
-                    _ if a == 1 => rows.row(y + by, z),
-                    _ => rows.row(y, z + by),
-                };
+            for n in 0..2 * R + 1 {
+                let by = n as isize - R as isize;
+                let row = if a == 1 { plane.along_y(j, by) } else { plane.along_z(j, by) };
+                cross.lines[a - 1][n + M / 2 - R] = row;
             }
         }
         cross
     }
-}
 
-/// Rows of one column, of which those of the tile itself and what lies straight beside them are found without
-/// a search for each.
-struct Rows<'a, T, const R: usize, const N: usize> {
-    own: Part<'a, T>,
-    near: grid::Rows<'a, T>,
-    /// Points of a row.
-    length: usize,
-    /// First row and plane of the tile, and how many.
-    first: [isize; 2],
-    count: [isize; 2],
-    /// The plane that the following are for.
-    plane: Option<isize>,
-    /// Rows as the tile's in planes up to `R` away; empty where there are none.
-    beside: [&'a [T]; N],
-    /// In the plane, the `R` rows before the tile's, nearest first, and those after.
-    beyond: [[&'a [T]; R]; 2],
-}
-
-impl<'a, T: Real, const R: usize, const N: usize> Rows<'a, T, R, N> {
-    fn new(near: &Near<'a, Grid>, column: State<T>) -> Self {
-        let mut rows = near.sub_domain().rows().map(|(j, k)| [j as isize, k as isize]);
-        let first = rows.next().unwrap_or_default();
-        let last = rows.last().unwrap_or(first);
-        let count = [last[0] - first[0] + 1, last[1] - first[1] + 1];
-        let length = near.domain().shape()[0];
-        let (own, near) = (near.state(column).own(), near.rows(column));
-        let (beside, beyond) = ([&[][..]; N], [[&[][..]; R]; 2]);
-        Self { own, near, length, first, count, plane: None, beside, beyond }
-    }
-
-    /// Finds what lies beside the tile's rows of a plane.
-    #[inline]
-    fn turn_to(&mut self, k: isize) {
-        if self.plane == Some(k) {
-            return;
-        }
-        self.plane = Some(k);
-        for (n, beside) in self.beside.iter_mut().enumerate() {
-            *beside = self.near.beside(k + n as isize - R as isize).unwrap_or(&[]);
-        }
-        for by in 0..R {
-            let before = self.first[0] - 1 - by as isize;
-            let after = self.first[0] + self.count[0] + by as isize;
-            self.beyond[0][by] = self.near.get(before, k).unwrap_or(&[]);
-            self.beyond[1][by] = self.near.get(after, k).unwrap_or(&[]);
-        }
-    }
-
-    #[inline]
-    fn row(&self, j: isize, k: isize) -> &'a [T] {
-        let [y, z] = [j - self.first[0], k - self.first[1]];
-        let is_beside = (0..self.count[0]).contains(&y);
-        if is_beside && (0..self.count[1]).contains(&z) {
-            return &self.own.span(z as usize)[y as usize * self.length..][..self.length];
-        }
-        let by = k - self.plane.unwrap_or(k);
-        if is_beside && by.unsigned_abs() <= R {
-            let beside = self.beside[(by + R as isize) as usize];
-            return &beside[y as usize * self.length..][..self.length];
-        }
-        if by == 0 {
-            let [end, depth] = if y < 0 { [0, -1 - y] } else { [1, y - self.count[0]] };
-            if let Some(row) = self.beyond[end as usize].get(depth as usize) {
-                return row;
+    /// The rows around it along axis `a`, where an end is near.
+    fn cross_near_end<'a>(
+        &'a self,
+        cross: &mut Cross<'a, T, M>,
+        plane: &Plane<'a, T, R, N>,
+        [ghosts, data]: [&'a [Vec<T>]; 2],
+        (f, a): (usize, usize),
+        (j, k): (usize, usize),
+    ) {
+        let Some(line) = self.line(f, a) else { return };
+        let (y, z, at) = (j as isize, k as isize, [0, j, k][a]);
+        let mut range = -(R as isize)..R as isize + 1;
+        if let Some((row, _)) = line.row(at) {
+            range = row.from..row.to();
+            if f < F {
+                cross.closed[a - 1] = Some((row, &data[f * 3 + a][..]));
             }
         }
-        self.near.row(j, k)
+        for by in range {
+            let beyond = at as isize + by;
+            let past = [-1 - beyond, beyond - line.points as isize];
+            let end = past.iter().position(|&past| past >= 0);
+            cross.lines[a - 1][(by + (M / 2) as isize) as usize] = match (end, &line.ends) {
+                (Some(end), Ends::Ghosts(_)) => &ghosts[ghost_row(f, a, end, past[end] as usize)],
+                (Some(_), Ends::Closed(_)) => &[],
+                _ if a == 1 => plane.far.row(y + by, z),
+                _ => plane.far.row(y, z + by),
+            };
+        }
     }
 }
 

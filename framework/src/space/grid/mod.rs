@@ -12,6 +12,10 @@ use crate::viewable::{Geometry, Viewable};
 /// Point (i, j, k) is number `(k ny + j) nx + i`. A tile is a block of whole rows; its neighbours
 /// are the tiles that own a row within the stencil's reach, corners included.
 ///
+/// Tiles are numbered strip by strip, a strip being some tiles side by side in y through all planes, so that
+/// whoever walks by number soon comes by what it has left one plane ago: caches hold the planes of a strip, not those
+/// of a large grid. Under `PeerToPeer` several steps are taken while they do.
+///
 /// Rows are whole: a 1-D grid is one row and so one sub-domain, which one worker steps. To have it
 /// in parallel, lay it out in 2-D.
 ///
@@ -28,6 +32,8 @@ pub struct Grid {
     tile: [usize; 2],
     /// Tiles in y and z.
     tiles: [usize; 2],
+    /// Tiles side by side in y that are numbered through all planes before those beyond; the last may be fewer.
+    strip: usize,
     partition: Partition,
 }
 
@@ -40,6 +46,7 @@ pub struct GridBuilder {
     reach: usize,
     origin: [f64; 3],
     spacing: [f64; 3],
+    bytes: usize,
     tile: Option<[usize; 2]>,
     shifts: Vec<[isize; 2]>,
 }
@@ -69,10 +76,18 @@ impl GridBuilder {
         self
     }
 
-    /// Rows (in y) and planes (in z) of a tile; by default chosen so that a tile has some
-    /// 8,192 points, a task of several microseconds, small against the second-level cache; and as many
+    /// Bytes of a point in the fields that are stepped, each by itself; 8 by default. Tiles are chosen by what they take
+    /// in the caches.
+    pub fn bytes(mut self, bytes: usize) -> Self {
+        self.bytes = bytes;
+        self
+    }
+
+    /// Rows (in y) and planes (in z) of a tile; by default chosen so that a field takes some
+    /// 64 KiB in a tile, a task of several microseconds, small against the second-level cache; as many
     /// planes as the stencil reaches: nothing is copied between tiles, so they need not be compact, and a
-    /// front of tiles that run ahead under `PeerToPeer` moves on by the planes of one with every step.
+    /// front of tiles that run ahead under `PeerToPeer` moves on by the planes of one with every step; and, in
+    /// space, some times as high as that, since every step of the front leaves as much of it behind in y.
     pub fn tile(mut self, rows: usize, planes: usize) -> Self {
         self.tile = Some([rows, planes]);
         self
@@ -92,7 +107,8 @@ impl GridBuilder {
     pub fn build(self) -> Grid {
         let [nx, ny, nz] = self.shape;
         assert!(nx * ny * nz > 0, "a grid of shape {:?} has no points", self.shape);
-        let [rows, planes] = self.tile.unwrap_or_else(|| default_tile(self.shape, self.reach));
+        let [rows, planes] =
+            self.tile.unwrap_or_else(|| default_tile(self.shape, self.bytes, self.reach));
         assert!(rows * planes > 0, "a tile needs rows");
         let tile = [rows.min(ny), planes.min(nz)];
         let tiles = [ny.div_ceil(tile[0]), nz.div_ceil(tile[1])];
@@ -104,6 +120,7 @@ impl GridBuilder {
             spacing: self.spacing,
             tile,
             tiles,
+            strip: if nz > 1 { strip(rows * nx * self.bytes, tiles[0]) } else { tiles[0] },
             partition: Partition::new(nx * ny * nz),
         };
         grid.divide(&self.shifts);
@@ -111,9 +128,18 @@ impl GridBuilder {
     }
 }
 
-fn default_tile([nx, ny, nz]: [usize; 3], reach: usize) -> [usize; 2] {
+fn default_tile([nx, ny, nz]: [usize; 3], bytes: usize, reach: usize) -> [usize; 2] {
     let planes = reach.clamp(1, nz);
-    [(8192 / (nx * planes)).clamp(1, ny), planes]
+    let least = if nz > 1 { 4 * planes } else { 1 };
+    [(65_536 / (nx * bytes * planes)).max(least).min(ny), planes]
+}
+
+/// Tiles side by side in a strip, of `tiles` in all, a plane of one taking so many bytes: some 256 KiB in a plane, of
+/// which the few planes of several steps are a part of a worker's share of the caches, and strips about equally
+/// wide.
+fn strip(bytes: usize, tiles: usize) -> usize {
+    let widest = (262_144 / bytes).max(1);
+    tiles.div_ceil(tiles.div_ceil(widest))
 }
 
 impl Grid {
@@ -127,6 +153,7 @@ impl Grid {
             reach: 1,
             origin: [0.0; 3],
             spacing: [1.0; 3],
+            bytes: 8,
             tile: None,
             shifts: Vec::new(),
         }
@@ -166,28 +193,26 @@ impl Grid {
 
     fn divide(&mut self, shifts: &[[isize; 2]]) {
         let [ny, nz] = [self.shape[1], self.shape[2]];
+        if self.strip < self.tiles[0] {
+            self.partition.number_in_strips(self.strip);
+        }
         let mut neighbours = Vec::new();
-        for tk in 0..self.tiles[1] {
-            for tj in 0..self.tiles[0] {
-                let [rows, planes] = self.extent(tj, tk);
-                neighbours.clear();
-                let near_rows = near(rows.clone(), self.reach, ny, self.periodic[1]);
-                for k in near(planes.clone(), self.reach, nz, self.periodic[2]) {
-                    for &j in &near_rows {
-                        neighbours.push(self.owner(j, k) as u32);
-                    }
+        for id in 0..self.tiles[0] * self.tiles[1] {
+            let [rows, planes] = self.extent(id);
+            neighbours.clear();
+            let near_rows = near(rows.clone(), self.reach, ny, self.periodic[1]);
+            for k in near(planes.clone(), self.reach, nz, self.periodic[2]) {
+                for &j in &near_rows {
+                    neighbours.push(self.owner(j, k) as u32);
                 }
-                let own = self.owner(rows.start, planes.start) as u32;
-                neighbours.sort_unstable();
-                neighbours.dedup();
-                neighbours.retain(|&n| n != own);
-                let nx = self.shape[0];
-                let spans = planes.map(|k| Span {
-                    start: (k * ny + rows.start) * nx,
-                    end: (k * ny + rows.end) * nx,
-                });
-                self.partition.push(spans, neighbours.iter().copied());
             }
+            neighbours.sort_unstable();
+            neighbours.dedup();
+            neighbours.retain(|&n| n as usize != id);
+            let nx = self.shape[0];
+            let spans = planes
+                .map(|k| Span { start: (k * ny + rows.start) * nx, end: (k * ny + rows.end) * nx });
+            self.partition.push(spans, neighbours.iter().copied());
         }
         for &shift in shifts {
             let within = |a: usize| {
@@ -202,8 +227,11 @@ impl Grid {
         self.partition.seal().expect("tiles cover the grid and see each other mutually");
     }
 
-    /// Rows and planes of tile (tj, tk).
-    fn extent(&self, tj: usize, tk: usize) -> [std::ops::Range<usize>; 2] {
+    /// Rows and planes of tile number `id`.
+    fn extent(&self, id: usize) -> [std::ops::Range<usize>; 2] {
+        let first = id / (self.strip * self.tiles[1]) * self.strip;
+        let (place, width) = (id - first * self.tiles[1], self.strip_width(first));
+        let (tj, tk) = (first + place % width, place / width);
         let cut = |t: usize, length: usize, n: usize| t * length..((t + 1) * length).min(n);
         [cut(tj, self.tile[0], self.shape[1]), cut(tk, self.tile[1], self.shape[2])]
     }
@@ -211,7 +239,7 @@ impl Grid {
     /// The rows that are `shift` away from those of tile number `id`: of each plane those before the rows
     /// go around the end of the grid, and those after; either may be none.
     fn displaced(&self, id: usize, shift: [isize; 2]) -> impl Iterator<Item = Span> {
-        let [rows, planes] = self.extent(id % self.tiles[0], id / self.tiles[0]);
+        let [rows, planes] = self.extent(id);
         let [nx, ny, nz] = self.shape;
         let along =
             move |i: usize, by: isize, n: usize| (i as isize + by).rem_euclid(n as isize) as usize;
@@ -227,7 +255,14 @@ impl Grid {
 
     /// The tile that owns row j of plane k.
     fn owner(&self, j: usize, k: usize) -> usize {
-        k / self.tile[1] * self.tiles[0] + j / self.tile[0]
+        let (tj, tk) = (j / self.tile[0], k / self.tile[1]);
+        let first = tj - tj % self.strip;
+        first * self.tiles[1] + tk * self.strip_width(first) + tj - first
+    }
+
+    /// Tiles side by side in the strip that begins with tile `first` in y.
+    fn strip_width(&self, first: usize) -> usize {
+        self.strip.min(self.tiles[0] - first)
     }
 }
 
@@ -251,7 +286,7 @@ impl Domain for Grid {
     }
 
     fn sub_domain(&self, id: usize) -> Tile<'_> {
-        let [rows, planes] = self.extent(id % self.tiles[0], id / self.tiles[0]);
+        let [rows, planes] = self.extent(id);
         Tile { grid: self, id, rows, planes }
     }
 }
@@ -278,6 +313,11 @@ impl<'a> Tile<'a> {
         self.planes.clone().flat_map(move |k| rows.clone().map(move |j| (j, k)))
     }
 
+    /// Its rows in y and its planes in z.
+    pub fn extent(&self) -> [std::ops::Range<usize>; 2] {
+        [self.rows.clone(), self.planes.clone()]
+    }
+
     /// The grid.
     pub fn grid(&self) -> &'a Grid {
         self.grid
@@ -299,6 +339,22 @@ mod tests {
         let grid = Grid::builder([4, 9, 9]).periodic([true, true, false]).tile(3, 3).build();
         assert_eq!(grid.partition().neighbours(4), [0, 1, 2, 3, 5, 6, 7, 8]);
         assert_eq!(grid.partition().neighbours(0), [1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn tiles_are_numbered_strip_by_strip() {
+        // Strips of 4, 4 and 3 tiles, of 8 rows but the last, which has 5.
+        let grid = Grid::builder([1024, 85, 3]).tile(8, 1).build();
+        assert_eq!((grid.partition().len(), grid.partition().strip()), (11 * 3, Some(4)));
+        let places = (0..33).map(|id| grid.sub_domain(id).rows().next().unwrap());
+        let strips = [(0..4), (4..8), (8..11)].into_iter();
+        let expected = strips.flat_map(|strip| {
+            (0..3).flat_map(move |k| strip.clone().map(move |tile| (8 * tile, k)))
+        });
+        assert!(places.eq(expected));
+        for id in 0..33 {
+            assert!(grid.sub_domain(id).rows().all(|(j, k)| grid.owner(j, k) == id));
+        }
     }
 
     #[test]

@@ -26,6 +26,10 @@ use crate::around::At;
 ///
 /// Of given fields an equation may read neighbours only where axes are periodic or have ghost points.
 pub trait Equation<T: Real, const F: usize, const G: usize>: Send + Sync + 'static {
+    /// Whether these are second derivatives in time: equations of first order are not compiled for steps that need
+    /// the state before.
+    const SECOND_ORDER: bool = false;
+
     /// Name for messages and traces.
     fn name(&self) -> &'static str;
 

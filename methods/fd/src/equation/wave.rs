@@ -20,6 +20,8 @@ pub(crate) struct Waves<T> {
 }
 
 impl<T: Real> Equation<T, 1, 0> for Waves<T> {
+    const SECOND_ORDER: bool = true;
+
     fn name(&self) -> &'static str {
         "wave equation"
     }
