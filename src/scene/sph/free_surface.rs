@@ -31,14 +31,14 @@ const PARAMETERS: [Parameter; 6] = [
 ];
 
 /// All parameters of a scene with a free surface, with its own defaults put over those that are
-/// shared; the kernel is Wendland's C2 (1995).
+/// shared; unless it has another, the kernel is Wendland's C2 (1995).
 pub(super) fn parameters(
     own: &[&[Parameter]],
     numbers: &[(&str, f64)],
     choices: &[(&str, &'static str)],
 ) -> Vec<Parameter> {
     let shared: [&[Parameter]; 2] = [&super::LIQUID_PARAMETERS, &PARAMETERS];
-    let choices = [&[("kernel", "wendland-c2")], choices].concat();
+    let choices = [choices, &[("kernel", "wendland-c2")]].concat();
     super::with_defaults(&[own, &shared].concat(), numbers, &choices)
 }
 

@@ -2,7 +2,9 @@
 //!
 //! The defaults: under tension, sums of pressures pull particles into clumps. Tensile control makes
 //! differences of them inside of the fluid, shifting keeps the particles even where the flow
-//! draws them out to filaments, and the delta-SPH diffusion takes the noise out of the pressure.
+//! draws them out to filaments, and the delta-SPH diffusion takes the noise out of the pressure. With Wendland's C2
+//! and a smoothing length of two spacings pairs form in the filaments: at omega t = 4 the closest were 0.003 spacings
+//! apart, instead of 0.5. The artificial viscosity `alpha h c / 8` of half of that length takes more of `alpha`.
 
 use finegrain_framework::run::{Every, Run, Summary};
 use finegrain_framework::space::Cells;
@@ -21,8 +23,8 @@ use crate::scene::{Precision, Report, SceneError};
 pub fn parameters() -> Vec<Parameter> {
     free_surface::parameters(
         &[&rotating_patch::PARAMETERS],
-        &[("smoothing_ratio", 2.0), ("artificial_viscosity", 0.02)],
-        &[("tension", "control"), ("shifting", "on")],
+        &[("smoothing_ratio", 1.0), ("artificial_viscosity", 0.06)],
+        &[("kernel", "quintic-spline"), ("tension", "control"), ("shifting", "on")],
     )
 }
 
