@@ -20,7 +20,8 @@ SIDE, ROUNDS = sys.argv[1:3] + ["448", "5"][len(sys.argv[1:3]) :]
 THREADS = subprocess.run(["nproc"], capture_output=True, text=True, check=True).stdout.strip()
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ROOT / "target/stencils/bin/python"
-PEERS = {"pystencils": "2.0", "devito": "4.8.23"}
+# Without the second, pystencils does not know what the processor can and generates no vectors.
+PEERS = {"pystencils": ["pystencils==2.0", "py-cpuinfo==9.0.0"], "devito": ["devito==4.8.23"]}
 # Ways of a peer that go on after a round with all of them.
 KEPT = 3
 
@@ -30,10 +31,10 @@ def install():
     if not PYTHON.exists():
         subprocess.run([sys.executable, "-m", "venv", PYTHON.parents[1]], check=True)
     there = []
-    for peer, version in PEERS.items():
+    for peer, packages in PEERS.items():
         has_it = [PYTHON, "-c", f"import {peer}"]
         if subprocess.run(has_it, capture_output=True).returncode != 0:
-            subprocess.run([PYTHON, "-m", "pip", "install", "-q", f"{peer}=={version}"])
+            subprocess.run([PYTHON, "-m", "pip", "install", "-q", *packages])
         if subprocess.run(has_it, capture_output=True).returncode == 0:
             there.append(peer)
         else:
