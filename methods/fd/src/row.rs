@@ -419,8 +419,8 @@ where
         })
     }
 
-    /// Writes the next state, or the rates. Compiled for two and for three axes and inlined, so that no pack asks how
-    /// many there are.
+    /// Writes the next state, or the rates. Of light equations compiled for two and for three axes and inlined, so that
+    /// no pack asks how many there are.
     #[inline(always)]
     fn fill_along(&self, axes: usize, targets: &mut Targets<'_, V::Vector, F>) {
         let advance = self.row.advance;
@@ -442,8 +442,8 @@ where
     #[inline(always)]
     fn onto(self, mut targets: [&mut [V::Vector]; F]) {
         match self.weights.axes {
-            3 if V::LANES > 1 => self.onto_along(3, &mut targets),
-            2 if V::LANES > 1 => self.onto_along(2, &mut targets),
+            3 if V::LANES > 1 && E::IS_LIGHT => self.onto_along(3, &mut targets),
+            2 if V::LANES > 1 && E::IS_LIGHT => self.onto_along(2, &mut targets),
             axes => self.onto_along(axes, &mut targets),
         }
     }
@@ -482,8 +482,8 @@ where
     #[inline(always)]
     fn fill(self, targets: &mut Targets<'_, V::Vector, F>) {
         match self.weights.axes {
-            3 if V::LANES > 1 => self.fill_along(3, targets),
-            2 if V::LANES > 1 => self.fill_along(2, targets),
+            3 if V::LANES > 1 && E::IS_LIGHT => self.fill_along(3, targets),
+            2 if V::LANES > 1 && E::IS_LIGHT => self.fill_along(2, targets),
             axes => self.fill_along(axes, targets),
         }
     }

@@ -15,7 +15,8 @@ use finegrain_sph::{Fields, Fluid, Sph};
 use super::{Flow, SphScene, free_surface, tank};
 use crate::scene::dam_break::{self, DamBreak, HEIGHT, WIDTH};
 use crate::scene::parameter::{Parameter, Parameters};
-use crate::scene::tank::{DENSITY, GRAVITY};
+use crate::scene::report::Picture;
+use crate::scene::tank::{DENSITY, GRAVITY, Tank};
 use crate::scene::{Precision, Report, SceneError};
 
 /// From here on the front of the experiment is that of water without a gate, in its unit of time:
@@ -101,6 +102,17 @@ impl<T: Real, P: Real> Flow<T, P> for DamFlow {
 
     fn title(&self) -> String {
         "Dam break".to_owned()
+    }
+
+    /// Without the upper half of the tank, where there is little but spray.
+    fn picture(&self, simulation: &Simulation<Cells<P>>, fields: &Fields<T, P>) -> Picture {
+        let Tank { width, height } = self.scene.tank;
+        let title = Flow::<T, P>::title(self);
+        let spacing = Flow::<T, P>::spacing(self);
+        let margin = 2.0 * spacing;
+        super::picture(simulation, fields, title, spacing)
+            .window([-margin; 2], [width + margin, 0.5 * height])
+            .into()
     }
 
     fn spacing(&self) -> f64 {

@@ -25,6 +25,8 @@ impl<F> Transport<F> {
 }
 
 impl<T: Real, F: FaceValue> Equation<T, 1, 3> for Transport<F> {
+    const IS_LIGHT: bool = false;
+
     fn name(&self) -> &'static str {
         "advection"
     }

@@ -28,6 +28,8 @@ impl<T, F> Steepening<T, F> {
 }
 
 impl<T: Real, F: FaceValue> Equation<T, 1, 0> for Steepening<T, F> {
+    const IS_LIGHT: bool = false;
+
     fn name(&self) -> &'static str {
         "Burgers' equation"
     }

@@ -34,6 +34,8 @@ pub(crate) struct Conservation<T> {
 }
 
 impl<T: Real, const F: usize> Equation<T, F, 0> for Conservation<T> {
+    const IS_LIGHT: bool = false;
+
     fn name(&self) -> &'static str {
         "Euler's equations"
     }

@@ -29,6 +29,9 @@ pub trait Equation<T: Real, const F: usize, const G: usize>: Send + Sync + 'stat
     /// Whether these are second derivatives in time: equations of first order are not compiled for steps that need
     /// the state before.
     const SECOND_ORDER: bool = false;
+    /// Whether a point takes so few operations that asking for the number of axes would show: it is compiled for two
+    /// and for three of them besides.
+    const IS_LIGHT: bool = true;
 
     /// Name for messages and traces.
     fn name(&self) -> &'static str;
