@@ -5,10 +5,14 @@ use std::collections::BTreeMap;
 use finegrain::scene::{Orders, Precision, Report, Scene};
 
 fn run(name: &str, settings: &[(&str, &str)]) -> Report {
+    run_with(name, settings, Orders::default())
+}
+
+fn run_with(name: &str, settings: &[(&str, &str)], orders: Orders) -> Report {
     let scene = Scene::find(name).unwrap();
     let parameters = scene.set(settings.iter().copied()).unwrap();
     let prepared = scene.prepare(None, &parameters, Precision::F64).unwrap();
-    prepared.run(Orders::default()).unwrap()
+    prepared.run(orders).unwrap()
 }
 
 /// Checks that results lie between two ends.
@@ -38,6 +42,8 @@ fn rotating_patch() {
     let report = run("rotating-patch", &[("resolution", "30")]);
     are(&report.errors, &[("angular_momentum", -0.01, 0.01), ("centre_pressure", -0.05, 0.05)]);
     are(&report.results, &[("voids", 0.0, 0.0), ("energy_growth", 0.0, 1e-3)]);
+    // With a spline of Wendland, two spacings wide, pairs formed in the arms.
+    are(&report.results, &[("closest_pair", 0.25, 2.0)]);
 }
 
 #[test]
@@ -52,6 +58,15 @@ fn dam_break() {
     let report = run("dam-break", &[("resolution", "15")]);
     are(&report.errors, &[("front", 0.0, 0.05)]);
     are(&report.results, &[("through_walls", 0.0, 0.0)]);
+}
+
+/// Onto the far wall, back, and what falls down there.
+#[test]
+fn dam_break_to_the_end() {
+    let orders = Orders { until: Some(5.0), ..Orders::default() };
+    let report = run_with("dam-break", &[("resolution", "15")], orders);
+    are(&report.results, &[("through_walls", 0.0, 0.0), ("closest_pair", 0.25, 2.0)]);
+    are(&report.results, &[("energy_growth", 0.0, 0.01)]);
 }
 
 #[test]

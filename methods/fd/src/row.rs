@@ -14,6 +14,7 @@ use finegrain_framework::space::grid::RowsOfMut;
 use crate::around::{Around, At, Closed, Weights};
 use crate::equation::Equation;
 use crate::line::{self, Ends};
+use crate::plane::Plane;
 use crate::sweep::Sweep;
 
 /// A copy of what lies around the points next to an end of a row.
@@ -63,14 +64,29 @@ impl<T: Real> Advance<T> {
     }
 }
 
-/// A field's rows around one row.
+/// A field around one row.
 #[derive(Clone, Copy)]
-pub(crate) struct Cross<'a, T, const M: usize> {
-    pub here: &'a [T],
-    /// Rows further along y and z, the middle one being this; empty where none is to be read.
-    pub lines: [[&'a [T]; M]; 2],
-    /// Coefficients next to closed ends of y and z, and what is given there.
-    pub closed: [Option<(&'a line::Row<T>, &'a [T])>; 2],
+pub(crate) struct Cross<'a, T, const R: usize, const N: usize, const M: usize> {
+    plane: &'a Plane<'a, T, R, N>,
+    /// Of y and z, where an end of the axis is near. Not copied: a processor waits until what has just been written in
+    /// pieces can be read as a whole.
+    ends: [Option<&'a NearEnd<'a, T, M>>; 2],
+}
+
+impl<'a, T, const R: usize, const N: usize, const M: usize> Cross<'a, T, R, N, M> {
+    #[inline(always)]
+    pub fn new(plane: &'a Plane<'a, T, R, N>, ends: &'a [Option<NearEnd<'a, T, M>>; 2]) -> Self {
+        Self { plane, ends: [ends[0].as_ref(), ends[1].as_ref()] }
+    }
+}
+
+/// Rows along an axis of which an end is near.
+#[derive(Clone, Copy)]
+pub(crate) struct NearEnd<'a, T, const M: usize> {
+    /// The middle one is that around which they lie; empty where none is to be read.
+    pub rows: [&'a [T]; M],
+    /// Coefficients next to a closed end, and what is given there.
+    pub closed: Option<(&'a line::Row<T>, &'a [T])>,
 }
 
 /// A row to be evaluated.
@@ -85,8 +101,10 @@ pub(crate) struct Row<
     const M: usize,
 > {
     pub sweep: &'a Sweep<T, E, F, G, R, N, M>,
-    pub unknowns: [Cross<'a, T, M>; F],
-    pub given: [Cross<'a, T, M>; G],
+    /// Its number in its plane.
+    pub number: usize,
+    pub unknowns: [Cross<'a, T, R, N, M>; F],
+    pub given: [Cross<'a, T, R, N, M>; G],
     /// What is given on the boundary: of each unknown and axis.
     pub data: &'a [Vec<T>],
     pub advance: Advance<T>,
@@ -124,7 +142,8 @@ where
 {
     /// Whether it is away from closed ends of y and z.
     pub fn is_open(&self) -> bool {
-        self.unknowns.iter().all(|cross| cross.closed.iter().all(Option::is_none))
+        let mut ends = self.unknowns.iter().flat_map(|cross| cross.ends.iter().flatten());
+        ends.all(|end| end.closed.is_none())
     }
 
     /// Whether what becomes of it depends on what was in its place before.
@@ -135,8 +154,35 @@ where
 
     /// Field `f`, unknowns first.
     #[inline(always)]
-    fn cross(&self, f: usize) -> &Cross<'_, T, M> {
+    fn cross(&self, f: usize) -> &Cross<'_, T, R, N, M> {
         if f < F { &self.unknowns[f] } else { &self.given[f - F] }
+    }
+
+    /// Field `f` on the row itself.
+    #[inline(always)]
+    fn here(&self, f: usize) -> &[T] {
+        self.cross(f).plane.along_z(self.number, 0)
+    }
+
+    /// Field `f` on the rows along y and z, as far as `K` of them reach; the row itself where none is to be read: all are
+    /// as long as each other, so that no pack needs to be checked for being there.
+    #[inline(always)]
+    fn rows<const K: usize>(&self, f: usize, axes: usize) -> [[&[T]; K]; 2] {
+        let (cross, here) = (self.cross(f), self.here(f));
+        let mut rows = [[here; K]; 2];
+        for a in 1..axes {
+            for n in 0..K {
+                let by = n as isize - (K / 2) as isize;
+                let row = match cross.ends[a - 1] {
+                    Some(end) => end.rows[n + M / 2 - K / 2],
+                    None if by.unsigned_abs() > R => here,
+                    None if a == 1 => cross.plane.along_y(self.number, by),
+                    None => cross.plane.along_z(self.number, by),
+                };
+                rows[a - 1][n] = if row.is_empty() { here } else { row };
+            }
+        }
+        rows
     }
 
     /// The points from `start` to `end`, at least a pack of them, of an open row.
@@ -149,7 +195,7 @@ where
         [start, end]: [usize; 2],
         out: &mut Out<'_, '_, T, F>,
     ) {
-        let nx = self.unknowns[0].here.len();
+        let nx = self.here(0).len();
         let whole = (end - start) / V::LANES;
         let at = |pack: usize| start + pack * V::LANES;
         // Packs that read nothing beyond the row; where points are left over, one more begins before what has been
@@ -199,7 +245,7 @@ where
         [start, end]: [usize; 2],
         out: &mut Out<'_, '_, T, F>,
     ) {
-        let nx = self.unknowns[0].here.len();
+        let nx = self.here(0).len();
         let margin = self.closed.max(M / 2);
         let mut x = start;
         while x < end {
@@ -225,10 +271,10 @@ where
         [start, end]: [usize; 2],
         aside: usize,
     ) {
-        let nx = self.unknowns[0].here.len();
+        let nx = self.here(0).len();
         let from = start as isize - aside as isize;
         for (f, windows) in windows.iter_mut().enumerate() {
-            let (row, line) = (self.cross(f).here, self.sweep.line(f, 0));
+            let (row, line) = (self.here(f), self.sweep.line(f, 0));
             let window = &mut windows[end_of_row].0[..end - start + 2 * aside];
             if line.is_some_and(|line| matches!(line.ends, Ends::Periodic)) {
                 let mut place = from.rem_euclid(nx as isize) as usize;
@@ -247,7 +293,7 @@ where
 
     /// Field `f` at a place beyond a bounded row; 0 where there is nothing.
     fn beyond(&self, f: usize, place: isize) -> T {
-        let row = self.cross(f).here;
+        let row = self.here(f);
         let nx = row.len() as isize;
         let Some(line) = self.sweep.line(f, 0) else { return T::zero() };
         match &line.ends {
@@ -282,41 +328,22 @@ where
         }
     }
 
-    /// All fields around packs.
-    #[inline(always)]
-    fn arounds<'b, V: Pack<Scalar = T>, const K: usize>(
-        &'b self,
-        simd: V::Simd,
-        windows: &'b [[Window<T>; 2]],
-        place: Place,
-    ) -> ([Around<'b, V, K>; F], [Around<'b, V, K>; G]) {
-        let mut unknowns = [self.around::<V, K>(simd, 0, windows, place); F];
-        for f in 1..F {
-            unknowns[f] = self.around::<V, K>(simd, f, windows, place);
-        }
-        let mut given = [unknowns[0]; G];
-        for g in 0..G {
-            given[g] = self.around::<V, K>(simd, F + g, windows, place);
-        }
-        (unknowns, given)
-    }
-
-    /// Field `f` around packs.
+    /// Field `f` around packs, of which [`Row::rows`] has the rows.
     #[inline(always)]
     fn around<'b, V: Pack<Scalar = T>, const K: usize>(
         &'b self,
         simd: V::Simd,
         f: usize,
+        rows: &[[&'b [T]; K]; 2],
         windows: &'b [[Window<T>; 2]],
         place: Place,
     ) -> Around<'b, V, K> {
         let Place { x, count, window } = place;
         let length = count * V::LANES;
-        let cross = self.cross(f);
         let mut around = Around { simd, lines: [[&[][..]; K]; 3], closed: [None; 3] };
         let aside = if K > N { K / 2 } else { R };
         let along = match window {
-            None => &cross.here[x - aside..],
+            None => &self.here(f)[x - aside..],
             Some((end, place)) => &windows[f][end].0[place..],
         };
         let along = &along[..length + 2 * aside];
@@ -325,15 +352,13 @@ where
         }
         for a in 1..3 {
             for n in 0..K {
-                let row = cross.lines[a - 1][n + M / 2 - K / 2];
-                // All as long as each other, so that no pack needs to be checked for being there.
-                let row = if row.is_empty() { cross.here } else { row };
-                around.lines[a][n] = &V::packs(simd, &row[x..x + length])[..count];
+                around.lines[a][n] = &V::packs(simd, &rows[a - 1][n][x..x + length])[..count];
             }
         }
         if K > N && f < F {
             for a in 1..3 {
-                if let Some((row, data)) = cross.closed[a - 1] {
+                let closed = self.unknowns[f].ends[a - 1].and_then(|end| end.closed);
+                if let Some((row, data)) = closed {
                     let data = &V::packs(simd, &data[x..x + length])[..count];
                     around.closed[a] = Some(Closed { row, data });
                 }
@@ -347,6 +372,10 @@ where
         around
     }
 }
+
+/// Rows of unknowns and of given fields along y and z: see [`Row::rows`].
+type Rows<'b, T, const F: usize, const G: usize, const K: usize> =
+    ([[[&'b [T]; K]; 2]; F], [[[&'b [T]; K]; 2]; G]);
 
 /// Packs of a row from point `start` on.
 struct Packs<
@@ -381,6 +410,39 @@ impl<
 where
     E: Equation<V::Scalar, F, G>,
 {
+    /// The rows of all fields.
+    #[inline(always)]
+    fn rows(&self, axes: usize) -> Rows<'_, V::Scalar, F, G, K> {
+        let mut unknowns = [self.row.rows::<K>(0, axes); F];
+        for f in 1..F {
+            unknowns[f] = self.row.rows::<K>(f, axes);
+        }
+        let mut given = [unknowns[0]; G];
+        for g in 0..G {
+            given[g] = self.row.rows::<K>(F + g, axes);
+        }
+        (unknowns, given)
+    }
+
+    /// All fields around packs.
+    #[inline(always)]
+    fn arounds<'b>(
+        &'b self,
+        (unknown_rows, given_rows): &Rows<'b, V::Scalar, F, G, K>,
+        place: Place,
+    ) -> ([Around<'b, V, K>; F], [Around<'b, V, K>; G]) {
+        let around = |f, rows| self.row.around::<V, K>(self.simd, f, rows, self.windows, place);
+        let mut unknowns = [around(0, &unknown_rows[0]); F];
+        for f in 1..F {
+            unknowns[f] = around(f, &unknown_rows[f]);
+        }
+        let mut given = [unknowns[0]; G];
+        for g in 0..G {
+            given[g] = around(F + g, &given_rows[g]);
+        }
+        (unknowns, given)
+    }
+
     /// The unknowns and their rates of change, of an equation along so many axes.
     #[inline(always)]
     fn rates(
@@ -423,9 +485,9 @@ where
     /// no pack asks how many there are.
     #[inline(always)]
     fn fill_along(&self, axes: usize, targets: &mut Targets<'_, V::Vector, F>) {
-        let advance = self.row.advance;
+        let (advance, rows) = (self.row.advance, self.rows(axes));
         for (place, range) in self.places() {
-            let arounds = self.row.arounds::<V, K>(self.simd, self.windows, place);
+            let arounds = self.arounds(&rows, place);
             let mut targets = targets.part(range);
             for pack in 0..place.count {
                 let [here, rates] = self.rates(axes, &arounds, pack);
@@ -450,9 +512,9 @@ where
 
     #[inline(always)]
     fn onto_along(&self, axes: usize, targets: &mut [&mut [V::Vector]; F]) {
-        let advance = self.row.advance;
+        let (advance, rows) = (self.row.advance, self.rows(axes));
         for (place, range) in self.places() {
-            let arounds = self.row.arounds::<V, K>(self.simd, self.windows, place);
+            let arounds = self.arounds(&rows, place);
             let targets = targets.each_mut().map(|to| &mut to[range.clone()]);
             for pack in 0..place.count {
                 let [here, rates] = self.rates(axes, &arounds, pack);

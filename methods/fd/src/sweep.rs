@@ -12,7 +12,7 @@ use crate::around::{Coefficients, Weights};
 use crate::equation::Equation;
 use crate::line::{Ends, Line};
 use crate::plane::Plane;
-use crate::row::{Advance, Cross, Out, Row, Window};
+use crate::row::{Advance, Cross, NearEnd, Out, Row, Window};
 
 /// What becomes of the rate of change that an equation gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,17 +114,39 @@ where
                     self.fill(near, scratch, (j, k), moment.stage_time);
                 }
                 let Scratch { ghosts, data, windows } = &mut *scratch;
-                let cross = |plane, f| self.cross(plane, ghosts, data, f, (j, k));
+                let mut ends = [[None; 2]; F];
+                let mut given_ends = [[None; 2]; G];
+                if is_bounded {
+                    for a in 1..3 {
+                        for f in 0..F {
+                            ends[f][a - 1] =
+                                self.near_end(&fields[f], [ghosts, data], (f, a), (j, k));
+                        }
+                        for g in 0..G {
+                            given_ends[g][a - 1] =
+                                self.near_end(&given[g], [ghosts, data], (F + g, a), (j, k));
+                        }
+                    }
+                }
                 // Not by `from_fn`, which is not inlined.
-                let mut unknowns = [cross(&fields[0], 0); F];
+                let mut unknowns = [Cross::new(&fields[0], &ends[0]); F];
                 for f in 1..F {
-                    unknowns[f] = cross(&fields[f], f);
+                    unknowns[f] = Cross::new(&fields[f], &ends[f]);
                 }
                 let mut crosses = [unknowns[0]; G];
                 for g in 0..G {
-                    crosses[g] = cross(&given[g], F + g);
+                    crosses[g] = Cross::new(&given[g], &given_ends[g]);
                 }
-                let row = Row { sweep: self, unknowns, given: crosses, data, advance, dt, closed };
+                let row = Row {
+                    sweep: self,
+                    number: j,
+                    unknowns,
+                    given: crosses,
+                    data,
+                    advance,
+                    dt,
+                    closed,
+                };
                 let mut out = Out { rows: out, row: (j, k) };
                 if !is_long || !row.is_open() {
                     row.points(&single, windows, [0, nx], &mut out);
@@ -207,62 +229,36 @@ where
         }
     }
 
-    /// The rows around row `(j, k)` of field `f`, unknowns first.
-    #[inline(always)]
-    fn cross<'a>(
+    /// The rows of field `f`, unknowns first, along axis `a` around row `(j, k)`, if an end is near.
+    fn near_end<'a>(
         &'a self,
-        plane: &Plane<'a, T, R, N>,
-        ghosts: &'a [Vec<T>],
-        data: &'a [Vec<T>],
-        f: usize,
-        (j, k): (usize, usize),
-    ) -> Cross<'a, T, M> {
-        let here = plane.along_z(j, 0);
-        let mut cross = Cross { here, lines: [[&[]; M]; 2], closed: [None; 2] };
-        for a in 1..3 {
-            let Some(line) = self.line(f, a) else { continue };
-            if !line.is_inner([0, j, k][a], R) {
-                self.cross_near_end(&mut cross, plane, [ghosts, data], (f, a), (j, k));
-                continue;
-            }
-            for n in 0..2 * R + 1 {
-                let by = n as isize - R as isize;
-                let row = if a == 1 { plane.along_y(j, by) } else { plane.along_z(j, by) };
-                cross.lines[a - 1][n + M / 2 - R] = row;
-            }
-        }
-        cross
-    }
-
-    /// The rows around it along axis `a`, where an end is near.
-    fn cross_near_end<'a>(
-        &'a self,
-        cross: &mut Cross<'a, T, M>,
         plane: &Plane<'a, T, R, N>,
         [ghosts, data]: [&'a [Vec<T>]; 2],
         (f, a): (usize, usize),
         (j, k): (usize, usize),
-    ) {
-        let Some(line) = self.line(f, a) else { return };
+    ) -> Option<NearEnd<'a, T, M>> {
         let (y, z, at) = (j as isize, k as isize, [0, j, k][a]);
+        let line = self.line(f, a).filter(|line| !line.is_inner(at, R))?;
+        let mut near = NearEnd { rows: [&[]; M], closed: None };
         let mut range = -(R as isize)..R as isize + 1;
         if let Some((row, _)) = line.row(at) {
             range = row.from..row.to();
             if f < F {
-                cross.closed[a - 1] = Some((row, &data[f * 3 + a][..]));
+                near.closed = Some((row, &data[f * 3 + a][..]));
             }
         }
         for by in range {
             let beyond = at as isize + by;
             let past = [-1 - beyond, beyond - line.points as isize];
             let end = past.iter().position(|&past| past >= 0);
-            cross.lines[a - 1][(by + (M / 2) as isize) as usize] = match (end, &line.ends) {
+            near.rows[(by + (M / 2) as isize) as usize] = match (end, &line.ends) {
                 (Some(end), Ends::Ghosts(_)) => &ghosts[ghost_row(f, a, end, past[end] as usize)],
                 (Some(_), Ends::Closed(_)) => &[],
                 _ if a == 1 => plane.far.row(y + by, z),
                 _ => plane.far.row(y, z + by),
             };
         }
+        Some(near)
     }
 }
 
