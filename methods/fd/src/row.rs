@@ -41,26 +41,12 @@ pub(crate) enum Advance<T> {
     Rate,
     Euler(T),
     TwoStep(T),
-    Before(T),
 }
 
 impl<T: Real> Advance<T> {
     #[inline(always)]
     fn to<V: Pack<Scalar = T>>(self, here: V, rate: V) -> V {
         if let Self::Euler(dt) = self { rate.mul_add(rate.splat_like(dt), here) } else { rate }
-    }
-
-    #[inline(always)]
-    fn onto<V: Pack<Scalar = T>>(self, here: V, rate: V, before: V) -> V {
-        match self {
-            Self::Before(half_dt_squared) => {
-                rate.mul_add(rate.splat_like(half_dt_squared), here + before)
-            }
-            Self::TwoStep(dt_squared) => {
-                rate.mul_add(rate.splat_like(dt_squared), here + (here - before))
-            }
-            _ => self.to(here, rate),
-        }
     }
 }
 
@@ -149,7 +135,7 @@ where
     /// Whether what becomes of it depends on what was in its place before.
     #[inline(always)]
     fn is_onto(&self) -> bool {
-        matches!(self.advance, Advance::TwoStep(_) | Advance::Before(_))
+        matches!(self.advance, Advance::TwoStep(_))
     }
 
     /// Field `f`, unknowns first.
@@ -321,8 +307,10 @@ where
         let task =
             Packs::<V, E, F, G, R, N, M, K> { row: self, simd, weights, windows, places, start };
         // Asked of the equation first: what no equation needs is not compiled.
-        if E::SECOND_ORDER && self.is_onto() {
-            task.onto(out.row().map(|row| V::packs_mut(simd, &mut row[start..end])));
+        if E::SECOND_ORDER
+            && let Advance::TwoStep(dt_squared) = self.advance
+        {
+            task.onto(dt_squared, out.row().map(|row| V::packs_mut(simd, &mut row[start..end])));
         } else {
             out.rows.fill::<V>(simd, out.row, start..end, task);
         }
@@ -500,19 +488,19 @@ where
         }
     }
 
-    /// Advances what the targets hold.
+    /// Two steps from the state before, which the targets hold, to the next.
     #[inline(always)]
-    fn onto(self, mut targets: [&mut [V::Vector]; F]) {
+    fn onto(self, dt_squared: V::Scalar, mut targets: [&mut [V::Vector]; F]) {
         match self.weights.axes {
-            3 if V::LANES > 1 && E::IS_LIGHT => self.onto_along(3, &mut targets),
-            2 if V::LANES > 1 && E::IS_LIGHT => self.onto_along(2, &mut targets),
-            axes => self.onto_along(axes, &mut targets),
+            3 if V::LANES > 1 && E::IS_LIGHT => self.onto_along(3, dt_squared, &mut targets),
+            2 if V::LANES > 1 && E::IS_LIGHT => self.onto_along(2, dt_squared, &mut targets),
+            axes => self.onto_along(axes, dt_squared, &mut targets),
         }
     }
 
     #[inline(always)]
-    fn onto_along(&self, axes: usize, targets: &mut [&mut [V::Vector]; F]) {
-        let (advance, rows) = (self.row.advance, self.rows(axes));
+    fn onto_along(&self, axes: usize, dt_squared: V::Scalar, targets: &mut [&mut [V::Vector]; F]) {
+        let (rows, dt_squared) = (self.rows(axes), V::splat(self.simd, dt_squared));
         for (place, range) in self.places() {
             let arounds = self.arounds(&rows, place);
             let targets = targets.each_mut().map(|to| &mut to[range.clone()]);
@@ -521,7 +509,8 @@ where
                 for f in 0..F {
                     prefetch(targets[f], pack + AHEAD);
                     let before = V::of(self.simd, targets[f][pack]);
-                    targets[f][pack] = advance.onto(here[f], rates[f], before).vector();
+                    let next = rates[f].mul_add(dt_squared, here[f] + (here[f] - before));
+                    targets[f][pack] = next.vector();
                 }
             }
         }
@@ -543,9 +532,11 @@ where
 {
     #[inline(always)]
     fn fill(self, targets: &mut Targets<'_, V::Vector, F>) {
+        // Equations of second order are stepped by `onto`, and come here only where someone looks.
+        let is_light = V::LANES > 1 && E::IS_LIGHT && !E::SECOND_ORDER;
         match self.weights.axes {
-            3 if V::LANES > 1 && E::IS_LIGHT => self.fill_along(3, targets),
-            2 if V::LANES > 1 && E::IS_LIGHT => self.fill_along(2, targets),
+            3 if is_light => self.fill_along(3, targets),
+            2 if is_light => self.fill_along(2, targets),
             axes => self.fill_along(axes, targets),
         }
     }

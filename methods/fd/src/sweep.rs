@@ -24,7 +24,7 @@ pub enum Form {
     /// Of an equation of second order in time: `2 u_n - u_{n-1} + dt^2 u''`, the next state in the
     /// place of the last.
     TwoStep,
-    /// The state before the first, in the place of `-dt u'_0`: `u_0 - dt u'_0 + dt^2/2 u''`.
+    /// The state before the first, in the place of `u_0 + dt u'_0`: `2 u_0 - (u_0 + dt u'_0) + dt^2/2 u''`.
     Before,
 }
 
@@ -96,7 +96,7 @@ where
             Form::Rate => Advance::Rate,
             Form::Euler => Advance::Euler(dt),
             Form::TwoStep => Advance::TwoStep(dt * dt),
-            Form::Before => Advance::Before(T::of(0.5) * dt * dt),
+            Form::Before => Advance::TwoStep(T::of(0.5) * dt * dt),
         };
         scratch.ghosts.resize_with((F + G) * 4 * DEEPEST, Vec::new);
         scratch.data.resize_with(F * 3, Vec::new);
