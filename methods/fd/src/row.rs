@@ -152,7 +152,7 @@ where
 
     /// Field `f` on the rows along y and z, as far as `K` of them reach; the row itself where none is to be read: all are
     /// as long as each other, so that no pack needs to be checked for being there.
-    #[inline(always)]
+    #[inline(never)]
     fn rows<const K: usize>(&self, f: usize, axes: usize) -> [[&[T]; K]; 2] {
         let (cross, here) = (self.cross(f), self.here(f));
         let mut rows = [[here; K]; 2];
