@@ -15,7 +15,7 @@ use finegrain::scene::{Orders, Precision, Scene};
 
 type Error = Box<dyn std::error::Error>;
 
-/// Particles in the height of the dam.
+/// Particles in the width of the dam.
 const RESOLUTION: &str = "60";
 /// Steps of a sample, and samples of each case.
 const STEPS: u64 = 300;
@@ -30,7 +30,7 @@ fn main() -> Result<(), Error> {
         keep_a_core_busy();
     }
     let cores = thread::available_parallelism()?.get();
-    println!("dam-break by SPH, {RESOLUTION} particles in its height, workers: {cores}\n");
+    println!("dam-break by SPH, {RESOLUTION} particles in its width, workers: {cores}\n");
     println!("| machine | schedule | ms a step: best | median | speed beside fixed | waiting |");
     println!("|---|---|---|---|---|---|");
     for busy in [false, true] {

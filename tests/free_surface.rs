@@ -60,13 +60,14 @@ fn dam_break() {
     are(&report.results, &[("through_walls", 0.0, 0.0)]);
 }
 
-/// Onto the far wall, back, and what falls down there.
+/// Onto the far wall, back, and what falls down there: with a spline of Wendland, 1.5 spacings wide, energy grows by
+/// 2.9 %, without tensile control by 4.7 %, and without shifting pairs are left.
 #[test]
 fn dam_break_to_the_end() {
     let orders = Orders { until: Some(5.0), ..Orders::default() };
-    let report = run_with("dam-break", &[("resolution", "15")], orders);
+    let report = run_with("dam-break", &[("resolution", "20")], orders);
     are(&report.results, &[("through_walls", 0.0, 0.0), ("closest_pair", 0.25, 2.0)]);
-    are(&report.results, &[("energy_growth", 0.0, 0.01)]);
+    are(&report.results, &[("energy_growth", 0.0, 0.006)]);
 }
 
 #[test]

@@ -173,6 +173,7 @@ const FREE_SURFACE: &[Variant] = &[
     variant("tension control", &[("tension", "control")]),
     variant("artificial pressure", &[("tension", "artificial-pressure")]),
     variant("quintic spline", &[("kernel", "quintic-spline"), ("smoothing_ratio", "1.0")]),
+    variant("wendland-c2, 1.5", &[("kernel", "wendland-c2"), ("smoothing_ratio", "1.5")]),
     variant("symplectic-euler", &[("integrator", "symplectic-euler")]),
     variant("rk4", &[("integrator", "rk4")]),
 ];

@@ -88,7 +88,8 @@ pub struct Map {
     pub left_out: Vec<(&'static str, &'static str)>,
 }
 
-/// Runs everything in `plan` that is not known; `say` hears of the map whenever it has one entry more.
+/// Runs everything in `plan` that is not known, but no variant that sets what an earlier one of its case does (such as
+/// what has become the default); `say` hears of the map whenever it has one entry more.
 ///
 /// # Errors
 /// If a case names a scene or parameter that there is not.
@@ -96,7 +97,14 @@ pub fn map(plan: &Plan, mut say: impl FnMut(&Map)) -> Result<Map, SceneError> {
     let begun = Instant::now();
     let mut map = Map::default();
     for case in &plan.cases {
+        let (scene, mut tried) = (Scene::find(case.scene)?, Vec::new());
         for variant in case.variants {
+            let settings = case.settings.iter().chain(variant.settings).copied();
+            let parameters = scene.set_for(Some(case.method), settings)?;
+            if tried.contains(&parameters) {
+                continue;
+            }
+            tried.push(parameters);
             if let Some(known) = plan.known.iter().find(|known| known.is_of(case, variant)) {
                 map.entries.push(known.clone());
                 continue;

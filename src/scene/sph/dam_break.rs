@@ -1,11 +1,10 @@
 //! The dam break in SPH.
 //!
 //! The defaults: the diffusion of density that knows the gradient of the density against the noise
-//! of impacts; the artificial viscosity and the repulsion by walls that keep single particles of
-//! spray from slipping through the far wall: without the repulsion seven did with 20 particles
-//! along the width. Shifting and tensile control keep pairs from forming in the spray and where water falls back;
+//! of impacts; the artificial viscosity and the repulsion by walls, without which the flow blows up after the impact on
+//! the far wall. Shifting and tensile control keep pairs from forming in the spray and where water falls back;
 //! shifting alone moves particles of the surface and makes energy. The quintic spline, since with Wendland C2 and 1.5
-//! spacings impacts make five times as much energy (docs/scenes.md).
+//! spacings impacts make up to eight times as much energy (docs/scenes.md).
 
 use finegrain_framework::run::{Every, Run, Summary};
 use finegrain_framework::space::Cells;
