@@ -1,5 +1,6 @@
 //! `finegrain report`.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -113,8 +114,11 @@ fn stability(arguments: StabilityArguments) -> Result<(), CommandError> {
     let cases: Vec<HardCase> =
         hard_cases::all().filter(|case| is_asked_for(case)).copied().collect();
     if cases.is_empty() {
-        let known: Vec<_> = hard_cases::all().map(|case| case.name).collect();
-        let known = known.join(", ");
+        let is_of_method =
+            |case: &&HardCase| arguments.method.as_ref().is_none_or(|method| case.method == method);
+        let known: BTreeSet<_> =
+            hard_cases::all().filter(is_of_method).map(|case| case.name).collect();
+        let known = known.into_iter().collect::<Vec<_>>().join("; ");
         return Err(format!("no case contains {:?}; there are {known}", arguments.case).into());
     }
     let budget = minutes(arguments.budget)?;

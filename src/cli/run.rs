@@ -257,7 +257,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     if let Some(bar) = bar {
         bar.finish();
     }
-    let report = outcome.map_err(told_once)?;
+    let mut report = outcome.map_err(told_once)?;
     // All files before the first word, for who reads may stop listening.
     let picture = match (&arguments.out, &report.picture) {
         (Some(out), Some(picture)) => {
@@ -271,6 +271,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     say(&mut stdout, &report)?;
     if let Some(path) = picture {
         writeln!(stdout, "picture of the final field: {}", path.display())?;
+        report.files.push(path);
     }
     if arguments.json {
         let line = Line {

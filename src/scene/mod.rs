@@ -159,8 +159,12 @@ pub trait Prepared {
     /// than what they save.
     fn points_per_worker(&self) -> usize;
 
-    /// Number of workers that it runs with: what is ordered, or all cores, as far as there are points enough.
+    /// Number of workers that it runs with: what is ordered, or all cores, as far as there are points enough; one
+    /// without a schedule for more.
     fn workers(&self, orders: &Orders) -> usize {
+        if orders.schedule == Schedule::Serial {
+            return 1;
+        }
         let worth = (self.points() / self.points_per_worker()).max(1);
         orders.workers.unwrap_or_else(|| worth.min(Settings::default().workers))
     }
