@@ -57,7 +57,8 @@ pub struct RunArguments {
     /// earlier run in it are overwritten where they have the same names, and stay where not.
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Dump fields for ParaView every so many steps (needs --out); ten times in a run by default. The
+    /// Dump fields for ParaView every so many steps (needs --out); ten times on the way to the end
+    /// time of the scene by default, wherever the run ends. The
     /// beginning and the end are always shown.
     #[arg(long, requires = "out", value_parser = at_least::<1>, allow_negative_numbers = true)]
     dump_every: Option<u64>,

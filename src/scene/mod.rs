@@ -86,7 +86,7 @@ pub struct Orders {
     pub wall_clock: Option<Duration>,
     /// Folder for files; none are written without.
     pub out: Option<PathBuf>,
-    /// Dump fields every so many steps; ten times by default.
+    /// Dump fields every so many steps; ten times on the way to the end time of the scene by default.
     pub dump_every: Option<u64>,
     /// Write a checkpoint every so many steps, besides the one at the end.
     pub checkpoint_every: Option<u64>,
