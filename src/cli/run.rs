@@ -58,8 +58,7 @@ pub struct RunArguments {
     #[arg(long)]
     out: Option<PathBuf>,
     /// Dump fields for ParaView every so many steps (needs --out); ten times on the way to the end
-    /// time of the scene by default, wherever the run ends. The
-    /// beginning and the end are always shown.
+    /// time of the scene by default, wherever the run ends. The beginning and the end are always shown.
     #[arg(long, requires = "out", value_parser = at_least::<1>, allow_negative_numbers = true)]
     dump_every: Option<u64>,
     /// Write OUT/checkpoint-STEP.ckpt every so many steps (needs --out), and keep the last three. One

@@ -57,6 +57,7 @@ pub mod measure;
 pub mod mesh;
 pub mod model;
 pub mod operator;
+mod packs;
 
 mod around;
 #[cfg(feature = "implicit")]

@@ -171,15 +171,14 @@ impl<'m, T: Compiled, const F: usize, const G: usize> Builder<'m, T, F, G> {
     ) -> Result<Fd<T>, FdError> {
         let (u, before) = (self.unknowns[0], self.out[0]);
         self.columns.keep(before.id());
-        let start = self.columns.values(u).to_vec();
-        let targets = self.columns.values_mut(before);
-        for ((target, u), position) in targets.iter_mut().zip(start).zip(self.mesh.positions()) {
+        for (point, position) in self.mesh.positions().enumerate() {
             let value = velocity(position);
             if !value.is_finite() {
                 let (field, range) = ("velocity", "finite");
                 return Err(FdError::Start { field, position, value, range });
             }
-            *target = u + T::of(time_step * value);
+            let start = self.columns.values(u)[point];
+            self.columns.values_mut(before)[point] = start + T::of(time_step * value);
         }
         // For those who look.
         let acceleration = self.columns.rate("acceleration");

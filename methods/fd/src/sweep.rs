@@ -11,8 +11,9 @@ use finegrain_framework::{
 use crate::around::{Coefficients, Weights};
 use crate::equation::Equation;
 use crate::line::{Ends, Line};
+use crate::packs::Advance;
 use crate::plane::Plane;
-use crate::row::{Advance, Cross, NearEnd, Out, Row, Window};
+use crate::row::{Cross, NearEnd, Out, Row, Window};
 
 /// What becomes of the rate of change that an equation gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
