@@ -138,7 +138,7 @@ fn of_heat() {
     same_bits(|| heat::<f32>(Order::Fourth, Integrator::Rk2));
 }
 
-/// In the plane, where a factor is small.
+/// In the plane, where a factor is small; of so many rows that there are several tiles.
 #[cfg(feature = "implicit")]
 fn implicit_heat<T: Compiled>(
     order: Order,
@@ -147,7 +147,7 @@ fn implicit_heat<T: Compiled>(
 ) -> Fd<T> {
     let (integrator, boundary) = (scheme.into(), brick().1);
     let heat = Heat { diffusivity: 0.2, order, integrator, boundary };
-    heat.model(&Mesh::new([side(37, 0.0, 1.0), side(22, 0.0, 0.7)]), 0.1, &start).unwrap()
+    heat.model(&Mesh::new([side(341, 0.0, 1.0), side(62, 0.0, 0.7)]), 0.1, &start).unwrap()
 }
 
 /// The last of a matrix that is not symmetric.
