@@ -1,4 +1,7 @@
 //! The 2-D heat equation as a new method: a rate stage that computes the next temperature.
+//!
+//! A sub-domain is a set of rows of `N` points along x; `(j, k)` is a row's place along y and z. Row `j - 1` of the first
+//! row is the last one, since y is periodic; the ends of a row are the stage's own affair.
 use finegrain::framework::{space::Grid, *};
 const N: usize = 512;
 
@@ -47,7 +50,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (temperature, next) = (columns.state("temperature"), columns.rate("next"));
         columns.values_mut(temperature)[N * N / 2 + N / 2] = 1.0;
         let diffusion = Diffusion { temperature, next, number: 0.2 };
+        // The stage computes the next temperature whole, so it is swapped in. A stage that computes a time derivative
+        // leaves the rest to an `Integrator`, as in lorenz.rs (alone) and gray_scott.rs (on a grid).
         let step = Step::builder().rate(diffusion).swap(temperature, next).build();
+        // `number` has the time step in it; what is given here is only what the clock counts, so steps.
         let model = Model::with_fixed_dt("heat", domain, columns, step, 1.0);
         let mut simulation = Simulation::new(model, Settings { schedule, ..Settings::default() })?;
         let start = std::time::Instant::now();

@@ -155,11 +155,13 @@ pub fn bench(command: BenchCommand) -> Result<(), CommandError> {
         pictures.push(path);
     }
     let breakdown = breakdown::measure(&plan)?;
-    breakdown.write_csv(&plan.out.join("where-time-goes.csv"))?;
+    let where_time_goes = plan.out.join("where-time-goes.csv");
+    breakdown.write_csv(&where_time_goes)?;
     table(out, &rows)?;
     doubts(out, &rows)?;
     breakdown_table(out, &breakdown)?;
     writeln!(out, "\nnumbers:  {}", plan.out.join("cylinder.csv").display())?;
+    writeln!(out, "          {}", where_time_goes.display())?;
     for picture in pictures {
         writeln!(out, "picture:  {}", picture.display())?;
     }

@@ -1,6 +1,7 @@
 //! What the commands do.
 
 pub mod bench;
+pub mod progress;
 pub mod report;
 pub mod run;
 pub mod scene_file;

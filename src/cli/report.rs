@@ -14,7 +14,7 @@ use finegrain::report::stability;
 use finegrain::scene::{Precision, Scene};
 
 use super::CommandError;
-use super::run::{at_least, setting};
+use super::run::{at_least, positive, say_without_effect, setting};
 
 /// Reports over many runs.
 #[derive(Subcommand)]
@@ -37,8 +37,8 @@ pub struct StabilityArguments {
     #[arg(long, value_parser = ["sph", "lbm", "fd"])]
     method: Option<String>,
     /// Begin no run after so many minutes.
-    #[arg(long, default_value_t = 60.0)]
-    budget: f64,
+    #[arg(long, value_name = "MINUTES", default_value = "60", value_parser = minutes, allow_negative_numbers = true)]
+    budget: Duration,
     /// Number of worker threads; all cores by default, but at most one for every 500 particles of SPH, 4,000
     /// sites of lattice Boltzmann or 8,000 points of finite differences.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -58,8 +58,8 @@ pub struct SpeedVsErrorArguments {
     #[arg(long, value_parser = ["sph", "lbm", "fd"])]
     method: Option<String>,
     /// Begin no run that would end after so many minutes; the cheapest are run first.
-    #[arg(long, default_value_t = 30.0)]
-    budget: f64,
+    #[arg(long, value_name = "MINUTES", default_value = "30", value_parser = minutes, allow_negative_numbers = true)]
+    budget: Duration,
     /// Number of worker threads; all cores by default, but at most one for every 500 particles of SPH, 4,000
     /// sites of lattice Boltzmann or 8,000 points of finite differences.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -121,13 +121,12 @@ fn stability(arguments: StabilityArguments) -> Result<(), CommandError> {
         let known = known.into_iter().collect::<Vec<_>>().join("; ");
         return Err(format!("no case contains {:?}; there are {known}", arguments.case).into());
     }
-    let budget = minutes(arguments.budget)?;
     make_folder(&arguments.out)?;
     let memory = arguments.out.join("stability.json");
     let known = stability::saved(&memory)
         .map_err(|error| format!("{} is not a map to go on from: {error}", memory.display()))?;
     let workers = arguments.workers.map(usize::from);
-    let plan = stability::Plan { cases, known, budget, workers };
+    let plan = stability::Plan { cases, known, budget: arguments.budget, workers };
     let mut out = std::io::stdout().lock();
     let mut unsaved = Ok(());
     let map = stability::map(&plan, |map| {
@@ -175,7 +174,7 @@ fn speed_vs_error(arguments: SpeedVsErrorArguments) -> Result<(), CommandError> 
         program: std::env::current_exe()?,
         comparisons,
         method: arguments.method,
-        budget: minutes(arguments.budget)?,
+        budget: arguments.budget,
         workers: arguments.workers.map(usize::from),
     };
     make_folder(&arguments.out)?;
@@ -205,6 +204,7 @@ fn scaling(arguments: ScalingArguments) -> Result<(), CommandError> {
     let method = scene.method(arguments.method.as_deref())?.name;
     let settings = arguments.settings.iter().map(|(key, value)| (key.as_str(), value.as_str()));
     let parameters = scene.set_for(Some(method), settings.clone())?;
+    say_without_effect(scene.method(Some(method))?, &parameters, &arguments.settings);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let plan = scaling::Plan {
         scene,
@@ -238,9 +238,9 @@ fn command_line() -> String {
     format!("finegrain {}", words.join(" "))
 }
 
-fn minutes(minutes: f64) -> Result<Duration, CommandError> {
-    Duration::try_from_secs_f64(60.0 * minutes)
-        .map_err(|why| format!("budget of {minutes} minutes: {why}").into())
+fn minutes(text: &str) -> Result<Duration, String> {
+    Duration::try_from_secs_f64(60.0 * positive(text)?)
+        .map_err(|why| format!("{text} minutes: {why}"))
 }
 
 fn make_folder(path: &Path) -> Result<(), CommandError> {

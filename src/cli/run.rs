@@ -3,20 +3,19 @@
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 use clap::Args;
 use finegrain::bench::{memory, workers};
 use finegrain::framework::Schedule;
 use finegrain::framework::format::AtomicFile;
-use finegrain::framework::port::Port;
-use finegrain::framework::run::Progress;
-use finegrain::scene::{Orders, Parameters, Precision, Report, Scene, SceneError, Value};
-use indicatif::{ProgressBar, ProgressStyle};
+use finegrain::scene::{
+    Method, Orders, Parameter, Parameters, Precision, Report, Scene, SceneError, Value,
+};
 use serde::Serialize;
 
 use super::CommandError;
+use super::progress::ProgressLine;
 use super::scene_file::SceneFile;
 use super::signals::Requests;
 
@@ -93,7 +92,8 @@ pub fn at_least<const LEAST: u64>(text: &str) -> Result<u64, String> {
         .ok_or_else(|| format!("{text:?} is not a whole number of at least {LEAST}"))
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A finite number above zero.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|x: &f64| *x > 0.0 && x.is_finite())
@@ -162,6 +162,24 @@ fn left_behind(folder: &Path) -> String {
     names.join(", ")
 }
 
+/// Says which of the parameters that were set have no effect.
+pub(super) fn say_without_effect(
+    method: &Method,
+    parameters: &Parameters,
+    settings: &[(String, String)],
+) {
+    let declared = (method.parameters)();
+    let is_set = |parameter: &&Parameter| settings.iter().any(|(key, _)| key == parameter.name);
+    for parameter in declared.iter().filter(is_set) {
+        if let (false, Some((other, values))) =
+            (parameters.has_effect(parameter), parameter.only_with)
+        {
+            let (name, values) = (parameter.name, values.join(" or "));
+            eprintln!("note: {name} has no effect here, only with {other} = {values}");
+        }
+    }
+}
+
 /// A failure that names its last checkpoint once.
 fn told_once(mut error: SceneError) -> SceneError {
     if let SceneError::Run(failed) = &mut error
@@ -204,6 +222,7 @@ pub fn run(arguments: RunArguments) -> Result<(), CommandError> {
     set(&settings).map_err(in_file)?;
     settings.extend(arguments.settings);
     let parameters = set(&settings)?;
+    say_without_effect(scene.method(Some(method))?, &parameters, &settings);
     let precision = arguments.precision.or(file.precision.map(Into::into)).unwrap_or_default();
     let prepared = scene
         .prepare(Some(method), &parameters, precision)
@@ -318,9 +337,10 @@ fn percent(part: f64) -> String {
 fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
     writeln!(
         out,
-        "{} after {} steps, t = {:.6e} s, in {:.2} s ({:.3} million point-steps a second)",
+        "{} after {} step{}, t = {:.6e} s, in {:.2} s ({:.3} million point-steps a second)",
         report.stopped,
         report.steps,
+        if report.steps == 1 { "" } else { "s" },
         report.time,
         report.wall_s,
         report.point_steps_per_s() / 1e6
@@ -350,45 +370,6 @@ fn say(out: &mut impl Write, report: &Report) -> std::io::Result<()> {
         writeln!(out, "  wrote {}", file.display())?;
     }
     Ok(())
-}
-
-/// Progress on standard error: how far, steps per second, time left.
-struct ProgressLine {
-    port: Port<Progress>,
-    thread: JoinHandle<()>,
-}
-
-impl ProgressLine {
-    fn start() -> Self {
-        let (port, mut inbox) = Port::bounded("progress", 4);
-        let thread = std::thread::spawn(move || {
-            let bar = ProgressBar::new(1000);
-            if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg}") {
-                bar.set_style(style);
-            }
-            while let Some(progress) = inbox.take() {
-                let Progress { step, time, steps_per_second, fraction, remaining } = progress;
-                if let Some(fraction) = fraction {
-                    bar.set_position((1000.0 * fraction) as u64);
-                }
-                let left = remaining.map_or_else(String::new, |left: Duration| {
-                    format!(", at most {} s left", left.as_secs())
-                });
-                bar.set_message(format!(
-                    "step {step}, t = {time:.4e} s, {steps_per_second:.1} steps/s{left}"
-                ));
-            }
-            bar.finish_and_clear();
-        });
-        Self { port, thread }
-    }
-
-    /// Ends it when the last event has been shown.
-    fn finish(self) {
-        drop(self.port);
-        // It only draws; if it panicked there is nothing to save.
-        let _ = self.thread.join();
-    }
 }
 
 #[cfg(test)]

@@ -462,6 +462,15 @@ impl Scene {
     }
 }
 
+/// Title of a picture of the state at a time, s.
+fn at_time(title: String, time: f64) -> String {
+    if time == 0.0 || time.abs() >= 0.1 {
+        format!("{title}, t = {time:.3} s")
+    } else {
+        format!("{title}, t = {time:.2e} s")
+    }
+}
+
 /// Everything that decides the bits, a line each, for checkpoints; other versions of this program may
 /// compute the same things in another order.
 fn description(scene: &str, method: &str, parameters: &Parameters, precision: Precision) -> String {

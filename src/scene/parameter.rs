@@ -258,15 +258,17 @@ impl Parameters {
         }
     }
 
+    /// Whether a parameter of the scene has an effect with these values.
+    pub fn has_effect(&self, parameter: &Parameter) -> bool {
+        parameter.only_with.is_none_or(|(other, values)| {
+            let value = self.0.get(other).map(Value::to_string);
+            value.is_none_or(|value| values.contains(&value.as_str()))
+        })
+    }
+
     /// Those of the `declared` that have an effect with these values.
     pub fn effective(&self, declared: &[Parameter]) -> BTreeMap<&'static str, &Value> {
-        let has_effect = |parameter: &&Parameter| {
-            parameter.only_with.is_none_or(|(other, values)| {
-                let value = self.0.get(other).map(Value::to_string);
-                value.is_none_or(|value| values.contains(&value.as_str()))
-            })
-        };
-        let effective = declared.iter().filter(has_effect);
+        let effective = declared.iter().filter(|parameter| self.has_effect(parameter));
         effective
             .filter_map(|parameter| Some((parameter.name, self.0.get(parameter.name)?)))
             .collect()

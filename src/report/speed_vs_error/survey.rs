@@ -77,7 +77,9 @@ pub struct Survey {
 /// Runs are repeated while all of a case took less than this, s.
 const REPEATED_BELOW: f64 = 3.0;
 /// No run is expected to take less than this, s.
-const SHORTEST: f64 = 1.0;
+const SHORTEST: f64 = 0.01;
+/// What is expected may be wrong by so much, s: no run is ended before.
+const PATIENCE: f64 = 1.0;
 /// Runs of a case at most.
 const MOST_RUNS: usize = 5;
 
@@ -99,7 +101,7 @@ impl Survey {
                 track.done = track.line.resolutions.len();
                 continue;
             }
-            let limit = (2.0 * track.expected_s).min(left);
+            let limit = (2.0 * track.expected_s).max(PATIENCE).min(left);
             match measure(plan, case, limit)? {
                 // It takes longer than expected: others may be cheaper.
                 None => track.expected_s = 2.0 * limit,

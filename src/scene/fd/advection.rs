@@ -66,9 +66,8 @@ impl<T: Compiled> Flow<T> for Passing {
 
     fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
         let time = simulation.clock().time();
-        let title = format!("{}, t = {time:.3} s", self.scene.title());
         let exact = |x| self.scene.quantity(x, time);
-        super::picture(simulation, parts, title, Axis::new("quantity"), exact)
+        super::picture(simulation, parts, self.scene.title(), Axis::new("quantity"), exact)
     }
 }
 

@@ -86,11 +86,12 @@ impl<T: Compiled> Flow<T> for Wave {
 
     fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
         let time = simulation.clock().time();
-        let title = format!("Burgers' equation, t = {time:.3} s");
         let quantity = Axis::new("velocity").unit("m/s");
-        super::picture(simulation, parts, title, quantity, |x| match time > 0.0 {
-            true => self.scene.velocity(x[0], time),
-            false => self.scene.start(x[0]),
+        super::picture(simulation, parts, "Burgers' equation".to_owned(), quantity, |x| {
+            match time > 0.0 {
+                true => self.scene.velocity(x[0], time),
+                false => self.scene.start(x[0]),
+            }
         })
     }
 }

@@ -108,8 +108,9 @@ impl<T: Compiled> Flow<T> for Spreading {
 
     fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
         let time = simulation.clock().time();
-        let title = format!("{}, t = {time:.3} s", self.scene.title());
         let quantity = Axis::new("temperature").unit("K");
-        super::picture(simulation, parts, title, quantity, |x| self.scene.temperature(x, time))
+        super::picture(simulation, parts, self.scene.title(), quantity, |x| {
+            self.scene.temperature(x, time)
+        })
     }
 }

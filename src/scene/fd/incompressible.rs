@@ -10,7 +10,7 @@ use super::Flow;
 use crate::figure::{Axis, Field};
 use crate::scene::parameter::{Kind, Parameter, Parameters};
 use crate::scene::report::Picture;
-use crate::scene::{Report, cubic};
+use crate::scene::{Report, at_time, cubic};
 
 /// Of operators in periodic boxes.
 pub const ORDER: Parameter = Parameter {
@@ -152,7 +152,7 @@ impl<T: Compiled, S: Scene> Flow<T> for Incompressible<S> {
             if is_in_body { f64::NAN } else { u.hypot(v).hypot(w) }
         });
         Field::of_grid([nx, ny], [x, y], [dx, dy], speeds)
-            .title(self.0.title())
+            .title(at_time(self.0.title(), simulation.clock().time()))
             .quantity(Axis::new("speed").unit("m/s"))
             .into()
     }

@@ -50,7 +50,7 @@ use finegrain_framework::{Integrator, Simulation};
 use super::heat::BoxEnds;
 use super::parameter::{Kind, Parameter, Parameters};
 use super::report::Picture;
-use super::{Orders, Precision, Prepared, Report, SceneError};
+use super::{Orders, Precision, Prepared, Report, SceneError, at_time};
 use crate::figure::{Axis, Chart, Field};
 
 /// The error for numbers that the method does not compute with.
@@ -206,6 +206,7 @@ fn picture<T: Compiled>(
     exact: impl Fn([f64; 3]) -> f64,
 ) -> Picture {
     let [nx, ny, nz] = parts.mesh.shape();
+    let title = at_time(title, simulation.clock().time());
     if ny * nz == 1 {
         let computed = values(simulation, parts, 0).map(|(x, u)| [x[0], u]);
         return chart(title, quantity, computed.collect(), |x| exact([x, 0.0, 0.0])).into();

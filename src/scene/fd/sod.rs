@@ -10,7 +10,7 @@ use crate::figure::Axis;
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
 use crate::scene::sod::{self, DIAPHRAGM, Sod, TUBE};
-use crate::scene::{Precision, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError, at_time};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
@@ -77,7 +77,7 @@ impl<T: Compiled> Flow<T> for Tube {
 
     fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
         let time = simulation.clock().time();
-        let title = format!("Sod's shock tube, {}-D, t = {time:.3} s", self.scene.dims);
+        let title = at_time(format!("Sod's shock tube, {}-D", self.scene.dims), time);
         let quantity = Axis::new("density").unit("kg/m^3");
         // Where the tube is, and of its rows one.
         let gases = gas::gases(simulation, parts, TUBE.heat_ratio).into_iter();

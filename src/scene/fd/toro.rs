@@ -68,8 +68,9 @@ impl<T: Compiled> Flow<T> for Tube {
 
     fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
         let time = simulation.clock().time();
-        let title = format!("{}, t = {time:.3} s", self.scene.title());
         let quantity = Axis::new("density").unit("kg/m^3");
-        super::picture(simulation, parts, title, quantity, |x| self.scene.exact(x[0], time).density)
+        super::picture(simulation, parts, self.scene.title(), quantity, |x| {
+            self.scene.exact(x[0], time).density
+        })
     }
 }

@@ -65,8 +65,9 @@ impl<T: Compiled> Flow<T> for Swinging {
 
     fn picture(&self, simulation: &Simulation<Grid>, parts: &Parts<T>) -> Picture {
         let time = simulation.clock().time();
-        let title = format!("{}, t = {time:.3} s", self.scene.title());
         let quantity = Axis::new("displacement").unit("m");
-        super::picture(simulation, parts, title, quantity, |x| self.scene.displacement(x, time))
+        super::picture(simulation, parts, self.scene.title(), quantity, |x| {
+            self.scene.displacement(x, time)
+        })
     }
 }

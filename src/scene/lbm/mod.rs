@@ -46,7 +46,7 @@ use finegrain_lbm::{
 
 use super::parameter::{Parameter, Parameters};
 use super::report::Picture;
-use super::{Orders, Precision, Prepared, Report, SceneError, cubic};
+use super::{Orders, Precision, Prepared, Report, SceneError, at_time, cubic};
 use crate::figure::{Axis, Field};
 
 /// The error for numbers that the method does not compute with.
@@ -318,7 +318,7 @@ fn picture<T: Compiled>(simulation: &Simulation<Grid>, lbm: &Final<T>, title: St
     });
     let [x, y, _] = lbm.position([0; 3]);
     Field::of_grid([nx, ny], [x, y], [spacing; 2], speed)
-        .title(title)
+        .title(at_time(title, simulation.clock().time()))
         .quantity(Axis::new("speed").unit("m/s"))
         .into()
 }

@@ -47,7 +47,7 @@ use finegrain_sph::{
 
 use super::parameter::{Parameter, Parameters};
 use super::report::Picture;
-use super::{Orders, Prepared, Report, SceneError};
+use super::{Orders, Prepared, Report, SceneError, at_time};
 use crate::figure::{Axis, Field, Outline};
 
 /// Parameters of the discretisation that scenes of all liquids share.
@@ -389,7 +389,7 @@ pub(crate) fn picture<T: Real, P: Real>(
         points.push((at, squared.sqrt()));
     }
     Field::of_points(points, spacing)
-        .title(title)
+        .title(at_time(title, simulation.clock().time()))
         .quantity(Axis::new("speed").unit("m/s"))
         .window([region.lower[0], region.lower[1]], [region.upper[0], region.upper[1]])
         .periodic([region.periodic[0], region.periodic[1]])

@@ -11,7 +11,7 @@ use crate::figure::Axis;
 use crate::scene::noh::{self, HEAT_RATIO, Noh, PRESSURE, TIME};
 use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
-use crate::scene::{Precision, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError, at_time};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
@@ -149,7 +149,7 @@ impl<T: Real, P: Real> Flow<T, P> for Implosion {
     fn picture(&self, simulation: &Simulation<Cells<P>>, fields: &Fields<T, P>) -> Picture {
         let time = simulation.clock().time();
         let points = Self::particles(simulation, fields, 2.0 * self.scene.shock(time));
-        let title = format!("{}, t = {time:.3} s", <Self as Flow<T, P>>::title(self));
+        let title = at_time(<Self as Flow<T, P>>::title(self), time);
         let x = Axis::new("distance from the origin").unit("m");
         gas::chart(title, x, points, |r| self.scene.density(r, time)).into()
     }

@@ -12,7 +12,7 @@ use crate::scene::parameter::{Parameter, Parameters};
 use crate::scene::report::Picture;
 use crate::scene::riemann::Gas;
 use crate::scene::sod::{self, DIAPHRAGM, Sod, TUBE};
-use crate::scene::{Precision, Report, SceneError};
+use crate::scene::{Precision, Report, SceneError, at_time};
 
 /// All parameters.
 pub fn parameters() -> Vec<Parameter> {
@@ -144,7 +144,7 @@ impl<T: Real, P: Real> Flow<T, P> for Tube {
         let time = simulation.clock().time();
         let particles = self.particles(simulation, fields);
         let points = particles.into_iter().map(|[x, density, ..]| [x, density]).collect();
-        let title = format!("{}, t = {time:.3} s", <Self as Flow<T, P>>::title(self));
+        let title = at_time(<Self as Flow<T, P>>::title(self), time);
         let exact = |x| self.scene.exact(x, time).density;
         gas::chart(title, Axis::new("x").unit("m"), points, exact).into()
     }
